@@ -7,6 +7,7 @@ it here, and it is imported when something is first looked at.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Protocol
 
 from .errors import OptionError, Problem, all_of
@@ -177,6 +178,4 @@ _STEERING = "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\
 
 def inert(text: str) -> str:
     r"""A text with what could steer a terminal written as ``\u001b``, as JSON does; so it is JSON still if it was."""
-    import re
-
     return re.sub(_STEERING, lambda found: f"\\u{ord(found[0]):04x}", text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import floor, log10
 from typing import Annotated, Any
 
 import typer
@@ -135,8 +136,6 @@ def banded(row: Mapping[str, Any], unit: str, has_band: bool = True) -> str:
 
 def decimals_of(half: float) -> int:
     """Decimals that show two digits of half a band, 6 at most."""
-    from math import floor, log10
-
     return 1 if half <= 0.0 else min(max(1 - floor(log10(half)), 0), 6)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -177,8 +178,6 @@ def options_of(command: str, given: Mapping[str, Any]) -> Options:
 
 def iso_date(text: str) -> str:
     """A date as 2026, 2026-05 or 2026-05-31; "" for what is none."""
-    from datetime import date
-
     found = DATE.fullmatch(text)
     if found is None:
         return ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import floor, log10
 from typing import Any
 
 from . import approaches
@@ -19,8 +20,6 @@ def banded(row: Mapping[str, Any]) -> str:
         return shown(mean, 3)
     if half is None:
         return NONE if low is None else f"{shown(low, 3)} or more"
-    from math import floor, log10
-
     decimals = 1 if half <= 0.0 else min(max(1 - floor(log10(half)), 0), 6)
     return f"{fixed(mean, decimals)} ± {fixed(half, decimals)}"
 

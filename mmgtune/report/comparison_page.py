@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..manoeuvres.named import KNOWN
 from . import advice, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
@@ -139,8 +141,6 @@ def _circles(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _motions(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Section:
     """Standard manoeuvres of both, each from her own approach."""
-    import numpy as np
-
     runs = [motions.Run(key, name[-30:], _LOOKS[key]) for key, name in zip("ab", names, strict=True)]
     found = [
         motions.Manoeuvre(

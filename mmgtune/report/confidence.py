@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..arrays import FloatArray
 from . import figures, findings, tables
 from .blocks import Block, Fold, Prose, Section, Table
@@ -50,8 +52,6 @@ def best_fit(record: RunRecord) -> Section:
 
 def running(history: Any) -> FloatArray:
     """Evaluations counted through all restarts, also where each restart counts from its own beginning."""
-    import numpy as np
-
     spent = np.asarray(history["evaluations"], dtype=np.float64)
     falls = np.where(np.diff(spent, prepend=spent[:1]) < 0.0, np.roll(spent, 1), 0.0)
     total: FloatArray = np.maximum(spent + np.cumsum(falls), 1.0)

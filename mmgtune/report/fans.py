@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..arrays import FloatArray
 from ..physics.frame import to_earth
 from .plot import Area, Axis, Color, Dots, Figure, Line, Look, Mark, Panel, Shapes, model_look
@@ -57,8 +59,6 @@ def track(
 
 def motions(name: str, alt: str, bands: Mapping[str, Columns], level: float, several: bool) -> Figure:
     """Heading, velocities and yaw rate over time, each with its fan."""
-    import numpy as np
-
     panels, seen = [], False
     for state in SHOWN:
         channel, found = CHANNELS[state], bands[state]
@@ -104,8 +104,6 @@ def calibration(nominal: Sequence[float], by_model: Mapping[str, Sequence[float 
 
 def regions(marks: Sequence[Mapping[str, float]], share: float) -> list[FloatArray]:
     """Where a share of the positions lies along a track: ellipses of mean and covariance, (17, 2) of east and north."""
-    import numpy as np
-
     radius = math.sqrt(-2.0 * math.log(1.0 - share))  # of a bivariate normal distribution
     turn = np.linspace(0.0, 2.0 * math.pi, 17)
     circle = radius * np.array([np.cos(turn), np.sin(turn)])
@@ -123,8 +121,6 @@ def regions(marks: Sequence[Mapping[str, float]], share: float) -> list[FloatArr
 
 def outline(mark: Mapping[str, float], L_pp: float) -> FloatArray:
     """A ship at her mean place and heading: (5, 2) of east and north."""
-    import numpy as np
-
     half, side = 0.5 * L_pp, 0.5 * L_pp / SLENDER
     ahead = np.array([half, 0.6 * half, -half, -half, 0.6 * half])
     abeam = np.array([0.0, side, side, -side, -side])

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ..arrays import FloatArray
 from .plot import Axis, Bar, Dots, Figure, Line, Look, Mark, Panel, Rule, Words
 from .wording import MINUS, clean, coefficient_text, number, short
@@ -117,8 +119,6 @@ def box_positions(rows: Sequence[str], columns: Sequence[str], values: Sequence[
 
 def convergence(evaluations: FloatArray, history: Mapping[str, FloatArray], least_squares: float | None) -> Figure:
     """J against evaluations: every generation's best, the best so far, and where each restart began."""
-    import numpy as np
-
     dots, best = Look("muted", 0.0, "", ".", 3.0), Look("after", 1.8)
     begun, least = Look("before", 1.0, "dot"), Look("flag", 1.1, "long")
     marks: list[Mark] = [Dots(evaluations, history["J_generation"], dots)]

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..arrays import FloatArray
 from ..errors import MmgtuneError
 from ..physics.quantities import STATES
@@ -29,8 +31,6 @@ class Ship:
 
     def with_forces(self, motion: Motion) -> Motion:
         """The motion with X and Y [N] and N [N m] of the model, as they are where nothing is known of the water."""
-        import numpy as np
-
         from ..motions import breakdown
 
         if self.model is None or not all(name in motion for name in self.model.inputs):

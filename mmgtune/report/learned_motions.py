@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from . import motion_block, motions
 from .blocks import Motions, Picture
 from .common import picture
@@ -49,8 +51,6 @@ def block(data: Mapping[str, Any], words: str, names: Sequence[str] = ()) -> Mot
 
 
 def _manoeuvre(one: Mapping[str, Any], many: bool) -> motions.Manoeuvre:
-    import numpy as np
-
     t = np.array(one["t_s"], dtype=float)
     own = {"measured": {"t": t, **_columns(one["measured"])}}
     bands: dict[str, dict[str, tuple[FloatArray, FloatArray]]] = {}
@@ -71,8 +71,6 @@ def _manoeuvre(one: Mapping[str, Any], many: bool) -> motions.Manoeuvre:
 
 def _columns(motion: Mapping[str, Sequence[float | None]]) -> dict[str, FloatArray]:
     """By state, (n,), NaN in gaps."""
-    import numpy as np
-
     return {name: np.array(motion[column], dtype=float) for name, column in STATES.items()}
 
 

@@ -12,6 +12,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .. import limits
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, reason
@@ -214,8 +216,6 @@ def inputs_of(folder: Path, data: Mapping[str, Any]) -> tuple[Channel, ...]:
 
 def history_in(folder: Path) -> dict[str, FloatArray]:
     """Columns of history.parquet by name; empty where there is none."""
-    import numpy as np
-
     if not (folder / "history.parquet").is_file():
         return {}
     columns = _parquet(folder / "history.parquet")
@@ -225,8 +225,6 @@ def history_in(folder: Path) -> dict[str, FloatArray]:
 
 def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, Motion]]:
     """The motions of a run folder by trial and which."""
-    import numpy as np
-
     path = folder / MOTIONS
     if not path.is_file():
         raise _problem(
@@ -253,8 +251,6 @@ def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, M
 
 def columns_in(path: Path, names: Sequence[str], texts: Sequence[str] = ()) -> dict[str, Any]:
     """Columns of a file of the run folder by name, (n_rows,): of numbers, and of texts."""
-    import numpy as np
-
     if not path.is_file():
         raise _problem("the run folder is not whole", path, "a file of its results is missing", "run it again")
     columns = _parquet(path)
@@ -284,7 +280,6 @@ def _parquet(path: Path) -> dict[str, Any]:
 
 def _column(column: Any) -> Any:
     """A column of Arrow as an array, (n_rows,)."""
-    import numpy as np
     import pyarrow as pa
 
     if pa.types.is_integer(column.type) or pa.types.is_floating(column.type):

@@ -13,14 +13,14 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import numpy.typing as npt
+
 from ..arrays import FloatArray
 from .plot import DASHES_OF, Look
 from .wording import CHANNELS, Channel
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     Motion = Mapping[str, FloatArray]
 
 LIMIT = 2500
@@ -121,8 +121,6 @@ def payload(
 
 def forces_drawn(manoeuvres: Sequence[Manoeuvre]) -> list[Channel]:
     """The forces that any motion has, in N where they are small."""
-    import numpy as np
-
     largest = 0.0
     for one in manoeuvres:
         for motion in one.runs.values():
@@ -167,8 +165,6 @@ def packed(values: FloatArray, *, steady: bool = False) -> dict[str, Any]:
 
     The error is at most 1/130,000 of their span.
     """
-    import numpy as np
-
     good = np.isfinite(values)
     if steady and len(values) > 1 and good.all():
         steps = np.diff(values)
@@ -183,8 +179,6 @@ def packed(values: FloatArray, *, steady: bool = False) -> dict[str, Any]:
 
 def unpacked(found: Mapping[str, Any]) -> FloatArray:
     """The numbers again, (n,), NaN in gaps: what the page's script does, for those who read a page in Python."""
-    import numpy as np
-
     if "d" not in found:
         return np.asarray(found["o"] + found["s"] * np.arange(found["n"]), dtype=np.float64)
     codes = np.frombuffer(base64.b64decode(found["d"]), dtype="<u2")
@@ -209,8 +203,6 @@ def spread(columns: Sequence[FloatArray], size: int, limit: int) -> npt.NDArray[
 
     So no peak of any column is lost.
     """
-    import numpy as np
-
     if size <= limit or not columns:
         return np.arange(size) if size <= limit else np.unique(np.linspace(0, size - 1, limit).astype(np.intp))
     keep = [np.linspace(0, size - 1, limit // 2).astype(np.intp)]
@@ -226,8 +218,6 @@ def spread(columns: Sequence[FloatArray], size: int, limit: int) -> npt.NDArray[
 
 def unwrapped(psi: FloatArray) -> FloatArray:
     """A heading without jumps of a full turn, gaps left as they are."""
-    import numpy as np
-
     good = np.isfinite(psi)
     smooth = psi.copy()
     smooth[good] = np.unwrap(psi[good])
@@ -236,16 +226,12 @@ def unwrapped(psi: FloatArray) -> FloatArray:
 
 def _whole_turns(psi: FloatArray) -> float:
     """The turns a heading has behind it where it begins [rad], as after days at sea."""
-    import numpy as np
-
     first = psi[np.isfinite(psi)][:1]
     return float(2.0 * math.pi * np.trunc(first[0] / (2.0 * math.pi))) if len(first) else 0.0
 
 
 def turns(psi: FloatArray, reference: FloatArray) -> float:
     """The whole turns by which one heading starts off another [rad]."""
-    import numpy as np
-
     size = min(len(psi), len(reference))
     both = np.flatnonzero(np.isfinite(psi[:size]) & np.isfinite(reference[:size]))
     if not len(both):

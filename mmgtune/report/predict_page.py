@@ -8,6 +8,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from . import approaches, fans, motion_block, motions
 from .band_indices import banded, indices_table
 from .band_scores import MEANING, MEANING_OF_ONE, known_scores, score_cells
@@ -186,8 +188,6 @@ def _cards(record: PredictRecord) -> tuple[Card, ...]:
 
 def _off(record: PredictRecord) -> list[Card]:
     """How far the mean is off what was measured, over the runs that are drawn; none where nothing was."""
-    import numpy as np
-
     squares: dict[str, list[float]] = {"place": [], "heading": []}
     for bands in record.bands.values():
         gaps = {name: of["mean"] - of["measured"] for name, of in bands.items() if name in ("x", "y", "psi")}

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..manoeuvres.named import in_order
 from . import advice, approaches, codes, measures, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
@@ -87,8 +89,6 @@ def _lead(record: SimulationRecord) -> tuple[str, ...]:
 
 def _off(record: SimulationRecord) -> tuple[float | None, float | None]:
     """Mean over runs of the root mean square distance off track [m] and error of heading [deg]."""
-    import numpy as np
-
     places, headings = [], []
     for found in record.motions.values():
         if "measured" not in found or "simulated" not in found:

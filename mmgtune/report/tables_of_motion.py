@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..manoeuvres.named import in_order
 from .blocks import Cell, Table, cells
 from .tables import tone
@@ -20,8 +22,6 @@ def distances(
     results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]], words: Mapping[str, str]
 ) -> Table:
     """Greatest and final distance off track of every trial, of each of the runs that are named."""
-    import numpy as np
-
     runs = [which for which in words if which != "measured"]
     rows = []
     for row in results:

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..arrays import FloatArray
 from .motions import Manoeuvre, Run
 from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel
@@ -98,8 +100,6 @@ def dense(look: Look, points: int = 2) -> Look:
 
 def distance_from(one: Motion, measured: Motion) -> tuple[FloatArray, FloatArray]:
     """Times and the distance of a simulated position from the measured one [m]."""
-    import numpy as np
-
     t = measured["t"]
     x, y = onto(one, "x", t), onto(one, "y", t)
     return t, np.hypot(x - measured["x"], y - measured["y"])
@@ -107,8 +107,6 @@ def distance_from(one: Motion, measured: Motion) -> tuple[FloatArray, FloatArray
 
 def onto(motion: Motion, name: str, t: FloatArray) -> FloatArray:
     """A column of a motion at the times ``t``; NaN outside the motion."""
-    import numpy as np
-
     own, values = motion["t"], motion[name]
     if own.shape == t.shape and np.allclose(own, t):
         return values
@@ -120,8 +118,6 @@ def onto(motion: Motion, name: str, t: FloatArray) -> FloatArray:
 
 def _track(one: Manoeuvre, runs: Sequence[Run], spacing: float, title: str) -> Panel:
     """One manoeuvre's tracks."""
-    import numpy as np
-
     marks: list[Mark] = []
     for run in runs:
         if run.key not in one.runs:
@@ -137,14 +133,10 @@ def _track(one: Manoeuvre, runs: Sequence[Run], spacing: float, title: str) -> P
 
 
 def _times(t: FloatArray, spacing: float) -> FloatArray:
-    import numpy as np
-
     good = t[np.isfinite(t)]
     return np.arange(good[0], good[-1] + 1e-9, spacing) if len(good) else np.empty(0)
 
 
 def _duration(motion: Motion) -> float:
-    import numpy as np
-
     t = motion["t"][np.isfinite(motion["t"])]
     return float(t[-1] - t[0]) if len(t) else 0.0

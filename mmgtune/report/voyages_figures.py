@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
 from ..arrays import FloatArray
 from .plot import Axis, Bar, Color, Figure, Line, Look, Mark, Panel, Rule, Words, model_look
 from .wording import clean, number, share
@@ -45,8 +47,6 @@ def distributions(values: Mapping[str, FloatArray], limits: Sequence[float], cla
 
     A strip along the top shows which class lies where: on a phone a narrow class has no room for its name.
     """
-    import numpy as np
-
     marks: list[Mark] = []
     legend, ends = [], []
     for place, (name, all_of) in enumerate(values.items()):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -364,8 +365,6 @@ def _bins(one: Mapping[str, Any]) -> Table:
 
 def hash_of(text: Any) -> int:
     """A number for an id, the same in every process."""
-    import zlib
-
     return zlib.crc32(str(text).encode("utf-8", "replace"))
 
 
