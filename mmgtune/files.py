@@ -33,6 +33,11 @@ def path_of(given: object) -> Path:
     raise OptionError(Problem("no path", brief(given), why, "write where the file or folder is to be"))
 
 
+def can_name_file(text: str) -> bool:
+    """Whether a text, such as the id of a trial, can be the name of a file in a folder of results."""
+    return text not in (".", "..") and not any(letter in "/\\" or letter < " " for letter in text)
+
+
 def kept_in(folder: Path | str | None, resume: bool) -> Path | None:
     """The folder in which long work keeps what it has; None for nowhere.
 

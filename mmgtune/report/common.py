@@ -10,7 +10,7 @@ from typing import Any
 from ..profile.doubts import in_words
 from . import findings
 from .advice import shortest
-from .blocks import Card, Fold, Picture, Prose, Section, Table
+from .blocks import Block, Card, Fold, Picture, Prose, Section, Table
 from .plot import Figure
 from .tables import pairs, tone
 from .wording import NONE, change, clean, count, number, percent, sentence, shown
@@ -30,6 +30,26 @@ def generated_banner(trials: Mapping[str, Any]) -> tuple[str, ...]:
         + ", ".join(clean(name) for name in made)
         + ".",
     )
+
+
+def banner_of_sources(sources: Sequence[str] | None, learned: bool = False) -> tuple[str, ...]:
+    """A banner where all trials of a model were generated.
+
+    sources  of the trials, each once
+    learned  whether the model is a network that learned from them
+    """
+    if list(sources or ()) != ["generated"]:
+        return ()
+    if learned:
+        return (
+            "The trials it learned from are generated, not measured: this says how the method works, not the ship.",
+        )
+    return ("The trials are generated, not measured: this says how the method works, not how a real ship moves.",)
+
+
+def ship_name(data: Mapping[str, Any]) -> str:
+    """What the ship of a run is called: her name, or else the id of her profile."""
+    return clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
 
 
 def warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
@@ -141,10 +161,6 @@ def provenance(data: Mapping[str, Any]) -> Section:
     """Where everything came from: command, versions, hashes, sources."""
     profile, trials = data["profile"], data["trials"]
     items = [
-        ("command", data.get("command")),
-        ("made", data.get("created")),
-        ("mmgtune", data.get("mmgtune")),
-        ("time taken", f"{shown(data.get('wall_s'), 3)} s" if number(data.get("wall_s")) is not None else None),
         ("ship profile", shortest(profile.get("path") or "", "ship_profiles")),
         ("profile's hash (SHA-256)", profile.get("sha256")),
         ("simulated by", _simulated_by(data)),
@@ -157,22 +173,49 @@ def provenance(data: Mapping[str, Any]) -> Section:
         ("tuned on", ", ".join(map(str, trials.get("tune") or [])) or "none"),
         ("tested on", ", ".join(map(str, trials.get("test") or [])) or "none"),
     ]
-    known = [(name, str(text)) for name, text in items if text not in (None, "")]
-    versions = [(str(name), str(text)) for name, text in sorted((data.get("environment") or {}).items())]
-    hashes = [(str(name), str(text)) for name, text in (trials.get("sha256") or {}).items()]
     options = [(str(name), _option(value)) for name, value in (data.get("options") or {}).items()]
-    folded: list[Fold] = []
-    for id, summary, titles, rows in (
-        ("options", "Options", ("option", "value"), options),
-        ("versions", "Versions", ("program", "version"), versions),
-        ("hashes", "Hashes of the trials", ("trial", "SHA-256"), hashes),
-    ):
-        if rows:
-            folded.append(Fold(summary, (pairs(f"{id}-table", summary, titles, rows),)))
     cited = tuple(clean(text) for text in data.get("citations") or ())
     sources = (Prose(("To be cited with these results:",)), Prose(cited, listed=True)) if cited else ()
-    table = pairs("provenance-table", "How this run was made", ("what", "value"), known)
-    return Section("provenance", "Provenance", (table, *folded, *sources))
+    return provenance_section(data, items, "trial", options, sources)
+
+
+def provenance_section(
+    data: Mapping[str, Any],
+    items: Sequence[tuple[str, Any]],
+    hashed: str,
+    options: Sequence[tuple[str, str]] = (),
+    below: Sequence[Block] = (),
+) -> Section:
+    """How a run was made: command and time, ``items`` as far as they are known, and folds of details.
+
+    hashed  what has hashes, in the singular: "trial"
+    """
+    versions = [(str(name), str(text)) for name, text in sorted((data.get("environment") or {}).items())]
+    hashes = [(str(name), str(text)) for name, text in (data["trials"].get("sha256") or {}).items()]
+    folded = [
+        Fold(summary, (pairs(f"{id}-table", summary, titles, rows),))
+        for id, summary, titles, rows in (
+            ("options", "Options", ("option", "value"), options),
+            ("versions", "Versions", ("program", "version"), versions),
+            ("hashes", f"Hashes of the {hashed}s", (hashed, "SHA-256"), hashes),
+        )
+        if rows
+    ]
+    rows = [*_of_run(data), *_known(items)]
+    table = pairs("provenance-table", "How this run was made", ("what", "value"), rows)
+    return Section("provenance", "Provenance", (table, *folded, *below))
+
+
+def _of_run(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Command, date, version and time of a run, as far as its record says them."""
+    time = f"{shown(data['wall_s'], 3)} s" if number(data.get("wall_s")) is not None else None
+    of = [("command", data.get("command")), ("made", data.get("created")), ("mmgtune", data.get("mmgtune"))]
+    return _known([*of, ("time taken", time)])
+
+
+def _known(items: Sequence[tuple[str, Any]]) -> list[tuple[str, str]]:
+    """Items that have a value."""
+    return [(name, str(text)) for name, text in items if text not in (None, "")]
 
 
 def _simulated_by(data: Mapping[str, Any]) -> str | None:
@@ -186,11 +229,17 @@ def _simulated_by(data: Mapping[str, Any]) -> str | None:
 
 def made_table(data: Mapping[str, Any], items: Sequence[tuple[str, str]]) -> Table:
     """How a run was made, of records with little of it."""
-    known = [("command", data.get("command")), ("made", data.get("created")), ("mmgtune", data.get("mmgtune"))]
-    if number(data.get("wall_s")) is not None:
-        known.append(("time taken", f"{shown(data['wall_s'], 3)} s"))
-    rows = [(name, str(text)) for name, text in known if text not in (None, "")]
-    return pairs("provenance-table", "How this was made", ("what", "value"), [*rows, *items])
+    return pairs("provenance-table", "How this was made", ("what", "value"), [*_of_run(data), *items])
+
+
+def made_rows(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Command, version and time of a run whose record has a ``provenance``."""
+    made = data["provenance"]
+    return [
+        ("command", clean(made["command"] or NONE)),
+        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
+        ("time", f"{shown(data['wall_s'], 3)} s"),
+    ]
 
 
 def _option(value: Any) -> str:

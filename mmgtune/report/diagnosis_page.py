@@ -10,7 +10,7 @@ from typing import Any
 from ..units import DIMENSIONLESS, NORMAL_95, read_as
 from . import advice, findings, measures, motion_block, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
-from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance
+from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance, ship_name
 from .differences import differences
 from .forces import ship_of
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
@@ -89,7 +89,7 @@ def build(record: DiagnosisRecord) -> Page:
         assumptions(data),
         provenance(data),
     ]
-    ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
+    ship = ship_name(data)
     return Page(
         title=f"{ship}: diagnosis",
         eyebrow=f"{ship} · {_WORDS.get(data['verdict'], clean(data['verdict']))}",

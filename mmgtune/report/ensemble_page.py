@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .blocks import Card, Page, Prose, Section, Table, cells
-from .common import of_training, picture, rms_errors
+from .common import banner_of_sources, of_training, picture, rms_errors
 from .learned_motions import block
 from .learning_page import (
     MEANING,
@@ -37,13 +37,11 @@ def build(record: LearningRecord) -> Page:
         "Loss of each network on the windows of an update, and, of the running mean of its weights, on "
         f"{watched}. Each is trained to the end: none is chosen."
     )
-    generated = data["provenance"]["trials"].get("sources") == ["generated"]
-    banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
     return Page(
         title=f"Ensemble of {clean(data['ship'])}",
         eyebrow=f"{clean(data['ship'])} · ensemble of {networks} of {data['layers']} × {data['width']} units",
         verdict=of_training(data, _verdict(record)),
-        banners=(banner,) if generated else (),
+        banners=banner_of_sources(data["provenance"]["trials"].get("sources"), learned=True),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(record),
         sections=(

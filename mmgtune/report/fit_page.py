@@ -11,7 +11,7 @@ from typing import Any
 from . import advice, codes, confidence, figures, findings, measures, motion_block, tables, tables_of_motion
 from .band_indices import indices_table
 from .blocks import Card, Commands, Fold, Page, Prose, Section
-from .common import assumptions, cards_of_misfit, generated_banner, picture, provenance, warnings
+from .common import assumptions, cards_of_misfit, generated_banner, picture, provenance, ship_name, warnings
 from .forces import ship_of
 from .load import Kind, RunRecord, history_in, inputs_of, motions_in
 from .wording import change, clean, number, percent, sentence, shown
@@ -39,7 +39,7 @@ def build(record: RunRecord) -> Page:
         assumptions(data),
         provenance(data),
     ]
-    ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
+    ship = ship_name(data)
     a_r = number(data["options"].get("a_r"))
     reach = f", coefficients within ±{shown(100.0 * a_r, 3)} %" if a_r is not None else ""
     return Page(

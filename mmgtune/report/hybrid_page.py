@@ -11,7 +11,7 @@ from typing import Any
 from . import learned_motions
 from .advice import shortest
 from .blocks import Block, Card, Commands, Page, Prose, Section, Table, cells
-from .common import of_training, picture, rms_errors
+from .common import banner_of_sources, of_training, picture, rms_errors
 from .learning_page import made_section
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look
@@ -45,13 +45,11 @@ def build(record: HybridRecord) -> Page:
         Section("next", "What to do next", (_next(record),)),
         made_section(data, [("memory of velocities", f"{shown(data['lag_s'], 3)} s")]),
     ]
-    sources = data["provenance"]["trials"].get("sources")
-    banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
     return Page(
         title=f"{clean(data['ship'])}: a network beside the model of forces",
         eyebrow=f"{clean(data['ship'])} · hybrid: a network beside the model of forces",
         verdict=of_training(data, _verdict(data)) if data["gained"] else _verdict(data),
-        banners=(banner,) if sources == ["generated"] else (),
+        banners=banner_of_sources(data["provenance"]["trials"].get("sources"), learned=True),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(data),
         sections=tuple(one for one in sections if one is not None),

@@ -12,7 +12,7 @@ from ..inputs import INPUTS
 from . import learned_motions
 from .advice import shortest
 from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import of_training, picture, rms_errors
+from .common import banner_of_sources, made_rows, of_training, picture, rms_errors
 from .load import Kind
 from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs
@@ -66,13 +66,11 @@ def build(record: LearningRecord) -> Page:
         Section("next", "What to do next", (next_steps(record),)),
         made_section(data, _more(data)),
     ]
-    generated = data["provenance"]["trials"].get("sources") == ["generated"]
-    banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
     return Page(
         title=f"Networks of {clean(data['ship'])}: type {clean(data['type'])}",
         eyebrow=f"{clean(data['ship'])} · networks of type {clean(data['type'])}: {clean(data['recipe'])}",
         verdict=of_training(data, _verdict(record)),
-        banners=(banner,) if generated else (),
+        banners=banner_of_sources(data["provenance"]["trials"].get("sources"), learned=True),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(record),
         sections=tuple(sections),
@@ -208,9 +206,7 @@ def made_section(data: Mapping[str, Any], more: Sequence[tuple[str, str]]) -> Se
         ("cite for them", clean(trials.get("citation") or NONE)),
         ("step", f"{shown(data['step_s'], 3)} s"),
         *more,
-        ("command", clean(made["command"] or NONE)),
-        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
-        ("time", f"{shown(data['wall_s'], 3)} s"),
+        *made_rows(data),
     ]
     chosen = [(clean(name), clean(value)) for name, value in made["options"].items()]
     options = pairs("options-table", "Options", ("option", "value"), chosen)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from . import advice, codes, findings, measures, motion_block, repeated, tables, tables_of_motion
 from .band_scores import SCORE_HEADS, score_cells
 from .blocks import Card, Commands, Fold, Nothing, Page, Picture, Prose, Section, Table, cells
-from .common import assumptions, doubts, generated_banner, picture, provenance, warnings
+from .common import assumptions, doubts, generated_banner, picture, provenance, ship_name, warnings
 from .forces import Ship
 from .load import Kind, inputs_of, motions_in
 from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
@@ -44,7 +44,7 @@ class LeaveOutRecord:
 def build(record: LeaveOutRecord) -> Page:
     """Everything the report of leaving trials out says."""
     data = record.data
-    ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
+    ship = ship_name(data)
     sections = [
         _motions(record),
         _scores(record),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from . import advice, fans, motion_block, motions
 from .band_scores import MEANING, SCORE_HEADS, known_scores, score_cells
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import picture
+from .common import banner_of_sources, made_rows, picture
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
 from .tables import pairs
@@ -90,12 +90,11 @@ def build(record: ModelsRecord) -> Page:
             1 + bool(record.motions),
             Section("diverged", "What diverged", (Prose(tuple(lost), listed=True, tone="warning"),)),
         )
-    banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
     return Page(
         title="Models compared",
         eyebrow=f"{clean(data['trials']['ship']) or 'ship not stated'} · models on {clean(data['trials']['name'])}",
         verdict=_verdict(record),
-        banners=(banner,) if data["trials"]["sources"] == ["generated"] else (),
+        banners=banner_of_sources(data["trials"]["sources"]),
         warnings=tuple(clean(text) for text in data.get("notes") or ()),
         cards=_cards(record),
         sections=(*sections, Section("next", "What to do next", (Commands(advice.after_models(data)),)), _made(record)),
@@ -271,7 +270,7 @@ def _below(cell: Mapping[str, Any]) -> float:
 
 def _made(record: ModelsRecord) -> Section:
     data = record.data
-    trials, made = data["trials"], data["provenance"]
+    trials = data["trials"]
     models = pairs(
         "models-table",
         "Models",
@@ -287,9 +286,7 @@ def _made(record: ModelsRecord) -> Section:
         ("cite for them", clean(trials.get("citation") or NONE)),
         ("spread counted in", clean(data["sigma_from"])),
         *(spread_words(clean(name), value) for name, value in data["sigma"].items()),
-        ("command", clean(made["command"] or NONE)),
-        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
-        ("time", f"{shown(data['wall_s'], 3)} s"),
+        *made_rows(data),
     ]
     hashes: Sequence[tuple[str, str]] = [(clean(name), clean(text)) for name, text in trials["sha256"].items()]
     return Section(

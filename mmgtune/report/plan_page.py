@@ -11,7 +11,7 @@ from typing import Any
 
 from .advice import Advice, again
 from .blocks import Card, Commands, Page, Prose, Section, Table, cells
-from .common import picture
+from .common import made_rows, picture
 from .load import Kind
 from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
 from .svg import LETTERS
@@ -147,15 +147,12 @@ def _advice(data: Mapping[str, Any]) -> Advice:
 
 
 def _made(data: Mapping[str, Any]) -> Section:
-    made = data["provenance"]
     items = [
         ("particles", clean(data["model"])),
         ("profile's hash (SHA-256)", clean(data["sha256"] or NONE)),
         ("particles that answer", f"{data['question']['particles']}"),
         ("share told by straight lines", share(data["linear_share"])),
-        ("command", clean(made["command"] or NONE)),
-        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
-        ("time", f"{shown(data['wall_s'], 3)} s"),
+        *made_rows(data),
     ]
     return Section("made", "How it was made", (pairs("made-table", "What it was made from", ("what", "value"), items),))
 

@@ -14,7 +14,7 @@ from . import approaches, fans, motion_block, motions
 from .band_indices import banded, indices_table
 from .band_scores import MEANING, MEANING_OF_ONE, known_scores, score_cells
 from .blocks import Block, Card, Fold, Page, Prose, Section, Table, cells
-from .common import doubts, picture
+from .common import banner_of_sources, doubts, made_rows, picture
 from .load import Kind, columns_in
 from .plot import LOOKS, Look
 from .tables import pairs
@@ -111,15 +111,14 @@ def build(record: PredictRecord) -> Page:
         why = "those whose bands hold more, or that diverged" if record.several else "the last, or those that diverged"
         said = Prose((f"{count(len(rest), 'run')} are not drawn: {why}.",))
         sections.append(Section("rest", "Other runs", (said, *(blocks and (Fold("Indices", blocks),)))))
-    sources = {run["trial"]["source"] for run in record.runs if run["trial"]}
-    banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
+    sources = list({run["trial"]["source"] for run in record.runs if run["trial"]})
     members = count(data["particles"], "particle") if record.several else "one model, no band"
     return Page(
         title="Prediction",
         eyebrow=f"{clean(data['model']['id'])} · {members}",
         verdict=_verdict(record),
         lead=_lead(record),
-        banners=(banner,) if sources == {"generated"} else (),
+        banners=banner_of_sources(sources),
         warnings=(*(f"{clean(note)}." for note in data["notes"]), *doubts(data)),
         cards=_cards(record),
         sections=(*sections, _made(record)),
@@ -302,15 +301,13 @@ def _scores_table(record: PredictRecord, whole: Mapping[str, Any]) -> Table:
 
 def _made(record: PredictRecord) -> Section:
     data = record.data
-    made, model = data["provenance"], data["model"]
+    model = data["model"]
     drawn = "drawn" if data["drawn"] else "the members the model has"
     items = [
         ("model", f"{clean(model['name'])}; {clean(model['method'])}"),
         ("profile's hash (SHA-256)", clean(model["sha256"] or NONE)),
         *([("particles", f"{data['particles']}, {drawn}")] if record.several else []),
-        ("command", clean(made["command"] or NONE)),
-        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
-        ("time", f"{shown(data['wall_s'], 3)} s"),
+        *made_rows(data),
     ]
     hashes = [(clean(run["id"]), clean(run["trial"]["sha256"])) for run in record.runs if run["trial"]]
     folded = (Fold("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),)

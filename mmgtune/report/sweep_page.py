@@ -20,6 +20,7 @@ from .common import (
     off_cards,
     picture,
     provenance,
+    ship_name,
     warnings,
 )
 from .load import Kind, SweepRecord
@@ -51,7 +52,7 @@ def build(record: SweepRecord) -> Page:
         assumptions(data),
         provenance(data),
     ]
-    ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
+    ship = ship_name(data)
     return Page(
         title=f"{ship}: how far may MMG coefficients move?",
         eyebrow=f"{ship} · fine-tuning in {len(runs)} ranges around the pre-determined values",

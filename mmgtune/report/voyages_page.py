@@ -14,10 +14,9 @@ from . import advice, measures, motion_block, motions
 from . import voyages_figures as figures
 from .band_scores import bands_section
 from .blocks import Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import doubts, generated_banner, picture
+from .common import doubts, generated_banner, picture, provenance_section
 from .load import Kind, columns_in
 from .plot import LOOKS, model_look
-from .tables import pairs
 from .wording import NONE, clean, count, input_channel, number, percent, share, shown
 
 PANELS = 8
@@ -454,10 +453,6 @@ def _how(data: Mapping[str, Any]) -> Section:
 def _provenance(data: Mapping[str, Any]) -> Section:
     trials = data["trials"]
     items = [
-        ("command", data.get("command")),
-        ("made", data.get("created")),
-        ("mmgtune", data.get("mmgtune")),
-        ("time taken", f"{shown(data.get('wall_s'), 3)} s"),
         ("voyages", trials.get("path")),
         ("licence of the voyages", trials.get("licence")),
         ("to be cited for the voyages", trials.get("citation")),
@@ -466,19 +461,7 @@ def _provenance(data: Mapping[str, Any]) -> Section:
         items.append((f"profile {clean(name)}", facts.get("source")))
         items.append((f"profile {clean(name)}, hash (SHA-256)", facts.get("sha256")))
         items.append((f"profile {clean(name)}, licence of the data it was tuned to", facts.get("licence")))
-    known = [(name, str(text)) for name, text in items if text not in (None, "")]
-    versions = [(str(name), str(text)) for name, text in sorted((data.get("environment") or {}).items())]
-    hashes = [(str(name), str(text)) for name, text in (trials.get("sha256") or {}).items()]
-    folded = [
-        Fold(summary, (pairs(f"{id}-table", summary, titles, rows),))
-        for id, summary, titles, rows in (
-            ("versions", "Versions", ("program", "version"), versions),
-            ("hashes", "Hashes of the voyages", ("voyage", "SHA-256"), hashes),
-        )
-        if rows
-    ]
-    table = pairs("provenance-table", "How this run was made", ("what", "value"), known)
-    return Section("provenance", "Provenance", (table, *folded))
+    return provenance_section(data, items, "voyage")
 
 
 def _percent(value: Any) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 
 from .. import limits, units
 from ..errors import Problem, TrialError, among, brief, closest, reason
+from ..files import can_name_file
 from ..limits import NAME
 from ..toml_reading import TomlReader, finite, toml_of
 from ..units import DEG
@@ -271,7 +272,7 @@ class _Table:
     def _id(self, name: str) -> None:
         if not name:
             self.wrong("it has no id", "id", fix='write id = "turn_35"')
-        elif name in (".", "..") or any(letter in "/\\" or letter < " " for letter in name):
+        elif not can_name_file(name):
             self.wrong("its id cannot be the name of a file", "id", fix="use letters, digits, '_' and '-'")
         elif too_long := NAME.problem(len(name), self.reader.where):
             self.reader.problems.append(too_long)

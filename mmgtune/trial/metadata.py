@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import Problem, among, brief, reason
+from ..files import can_name_file
 from ..limits import FACTS_BYTES, NAME, NESTING
 from ..toml_reading import depth, finite
 from .schema import COLUMNS, LARGEST, METADATA, MOTION, SCHEMA, SOURCES, impossible, known_column
@@ -65,7 +66,7 @@ def problems_in(facts: Mapping[str, Any], where: str, columns: Sequence[str]) ->
         if key in facts and not _is_text(facts[key]):
             problems.append(Problem(f"'{key}' is {brief(facts[key])}, not text", where, fix=f'write "{key}": "..."'))
     name = facts.get("id", "")
-    if isinstance(name, str) and (name in (".", "..") or any(letter in "/\\" or letter < " " for letter in name)):
+    if isinstance(name, str) and not can_name_file(name):
         problems.append(
             Problem(
                 f"id {brief(name)} cannot be the name of a file",

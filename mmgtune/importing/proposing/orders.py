@@ -7,14 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...trial.cross_checks import ADVANCE
 from ...units import DEG
 from ..conventions import RudderEvidence, rudder_evidence
 from .look import Look
 
 LARGEST = 1.75
 """Rudder angle [rad] beyond which a column is in degrees."""
-ADVANCE = (0.004, 0.12)
-"""Way a ship makes with each turn of her propeller, in her lengths; usual ones make 0.01 to 0.04."""
 
 
 @dataclass(frozen=True)
