@@ -21,7 +21,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..fitting.quadratic import flat_where_lost
 from ..units import NORMAL_95
 from . import noise as noises
-from .linear import STEP, basis, blocks_of, offset_derivatives
+from .linear import STEP, basis, blocks_of, measured_rows, offset_derivatives
 from .refit import ENOUGH
 from .wording import quantity
 from .workbench import Point, Workbench
@@ -352,10 +352,7 @@ class _Linear:
     @property
     def measured(self) -> BoolArray:
         """(n_rows,) which rows are residuals; the others are offsets."""
-        rows = np.ones(len(self.residual), dtype=bool)
-        for end in np.append(self.cases[1:], len(rows)):
-            rows[end - 6 : end] = False
-        return rows
+        return measured_rows(self.cases, len(self.residual))
 
     def columns(self, patterns: Sequence[Pattern]) -> FloatArray:
         """(n_rows, k) what the parameters of patterns change."""
@@ -454,9 +451,7 @@ def _difference(
         """Per name: values (n_voyages, n_names), their deviations, and the last fitted number with its deviation."""
         patterns = (*chosen[:i], pattern, *chosen[i + 1 :])
         A, x, _ = linear.solution(patterns)
-        size = np.linalg.norm(A, axis=0)
-        scale = np.where(size > 0.0, size, 1.0)
-        covariance = inflation * np.linalg.pinv((A / scale).T @ (A / scale), rcond=1e-12) / np.outer(scale, scale)
+        covariance = _covariance(A, inflation)
         n_free = int(linear.inside.sum())
         at = n_free + sum(
             len(one.names) * held.design(one, p).shape[1] for one, p in zip(held.asked[:i], patterns[:i], strict=True)
@@ -484,8 +479,8 @@ def _difference(
         common = tuple(zip(one[0].tolist(), error[0].tolist(), strict=True))
     trend: tuple[tuple[float, float], ...] = ()
     if q.trends:
-        mean = fitted("trend")[0].mean(axis=0)
-        trend = tuple((float(s / m), float(e / m)) for (s, e), m in zip(fitted("trend")[2], mean, strict=True))
+        lines, _, slopes = fitted("trend")
+        trend = tuple((float(s / m), float(e / m)) for (s, e), m in zip(slopes, lines.mean(axis=0), strict=True))
     if q.absorbed:
         mean = np.nanmean(values, axis=0)
         values, stderr = values / mean, stderr / mean
@@ -498,6 +493,14 @@ def _difference(
     )
 
 
+def _covariance(A: FloatArray, inflation: float) -> FloatArray:
+    """Covariance (n, n) of what is fitted with a matrix (n_rows, n) to noise of a variance, its columns scaled alike."""
+    size = np.linalg.norm(A, axis=0)
+    scale = np.where(size > 0.0, size, 1.0)
+    inverse = np.linalg.pinv((A / scale).T @ (A / scale), rcond=1e-12)
+    return np.asarray(inflation * inverse / np.outer(scale, scale))
+
+
 def _doubt(held: _Held, linear: _Linear, q: Quantity, chosen: Sequence[Pattern], inflation: float) -> float:
     """Relative standard error of what a quantity is absorbed by; 0 where that is held."""
     if not held.retuned(q):
@@ -506,10 +509,8 @@ def _doubt(held: _Held, linear: _Linear, q: Quantity, chosen: Sequence[Pattern],
     if not linear.inside[at]:
         return 0.0
     A, _, _ = linear.solution(chosen)
-    size = np.linalg.norm(A, axis=0)
-    scale = np.where(size > 0.0, size, 1.0)
     k = int(linear.inside[:at].sum())
-    variance = inflation * np.linalg.pinv((A / scale).T @ (A / scale), rcond=1e-12)[k, k] / scale[k] ** 2
+    variance = _covariance(A, inflation)[k, k]
     box = held.bench.sub_box([q.absorbed])
     value = float(box.low[0] + box.width[0] * held.unit[at])
     return float(box.width[0] * math.sqrt(max(float(variance), 0.0)) / max(abs(value), 1e-12))

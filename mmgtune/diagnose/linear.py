@@ -74,6 +74,17 @@ class Tuned:
         return np.asarray(rest - self.loose @ ((1.0 - self.left)[:, None] * (self.loose.T @ rest)))
 
 
+def measured_rows(cases: IntArray, n_rows: int) -> BoolArray:
+    """(n_rows,) which rows are residuals, where those of each case end with its six initial offsets.
+
+    cases  first rows of the cases
+    """
+    rows = np.ones(n_rows, dtype=bool)
+    for end in np.append(cases[1:], n_rows):
+        rows[end - len(STATES) : end] = False
+    return rows
+
+
 @dataclass(frozen=True, eq=False)
 class Linear:
     """The problem made linear at a point.  Rows: whitened residuals of each trial, then its six initial offsets.
@@ -118,10 +129,7 @@ class Linear:
     @property
     def measured(self) -> BoolArray:
         """(n_rows,) which rows are residuals; the others are offsets."""
-        rows = np.ones(len(self.residual), dtype=bool)
-        for end in np.append(self.cases[1:], len(rows)):
-            rows[end - len(STATES) : end] = False
-        return rows
+        return measured_rows(self.cases, len(self.residual))
 
     def columns(self, names: Sequence[str]) -> FloatArray:
         """Signatures of some parameters, (n_rows, n_parameters)."""

@@ -147,12 +147,11 @@ class FitProblem:
         values = self.box.from_unit(unit)
         if not self.grouped:
             return self.model.matrix(self.box.names, values)
-        made: dict[tuple[int, ...], FloatArray] = {}
-        for case in range(len(self.cases)):
-            own = tuple(k for k in range(len(self.box)) if self._is_of(k, case))
-            if own not in made:
-                made[own] = self.model.matrix([base_of(self.box.names[k]) for k in own], values[list(own)])
         each = [tuple(k for k in range(len(self.box)) if self._is_of(k, case)) for case in range(len(self.cases))]
+        made = {
+            own: self.model.matrix([base_of(self.box.names[k]) for k in own], values[list(own)])
+            for own in dict.fromkeys(each)
+        }
         return np.stack([made[own] for own in each], axis=1)
 
     @cached_property
