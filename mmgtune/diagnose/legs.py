@@ -494,7 +494,7 @@ def _difference(
 
 
 def _covariance(A: FloatArray, inflation: float) -> FloatArray:
-    """Covariance (n, n) of what is fitted with a matrix (n_rows, n) to noise of a variance, its columns scaled alike."""
+    """Covariance (n, n) of least-squares values of a matrix (n_rows, n) for noise of variance ``inflation``."""
     size = np.linalg.norm(A, axis=0)
     scale = np.where(size > 0.0, size, 1.0)
     inverse = np.linalg.pinv((A / scale).T @ (A / scale), rcond=1e-12)
