@@ -1,4 +1,4 @@
-"""Types of arrays, as annotations name them, and what any array is asked; shapes stand in the docstrings."""
+"""Array type aliases and a few small helpers; shapes stand in the docstrings."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""A model among the effects it does not have: runs of it through a simulator that is there already.
+"""Run a model through the already compiled kernel of all effects.
 
-A simulator made to measure takes seconds to compile, for every combination of effects anew.  That of all effects passes
-by those a run has not, to the same last bit; it takes a little longer.
+A kernel of its own takes seconds to compile for every combination of effects.  The kernel of all effects skips those
+that
+a model does not have, with bit-identical results; it takes a little longer.
 """
 
 from __future__ import annotations

@@ -151,7 +151,7 @@ def _of_runs(one: ByRun) -> list[str]:
 
 
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     from ..diagnose.retuned import in_words as in_words_of_retuned
     from ..profile.doubts import in_words
     from ..report.wording import span

@@ -186,7 +186,7 @@ def misfit_table(compared: Sequence[TrialComparison]) -> list[str]:
 
 
 def summary(result: FitResult, folder: str, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     lines = coefficient_table(result)
     if result.compared:
         lines += ["", *misfit_table(result.compared), f"before -> after tuning; root mean square; J by {result.method}"]

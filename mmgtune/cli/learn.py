@@ -153,7 +153,7 @@ def _train(
 
 
 def hybrid_summary(_: LearnedHybrid, found: dict[str, Any], folder: str, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     from ..fitting.comparison import rounded
     from ..report.common import rms_errors
 
@@ -192,7 +192,7 @@ def hybrid_summary(_: LearnedHybrid, found: dict[str, Any], folder: str, report:
 
 
 def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     members = found["members"]
     lines = [f"type {found['type']}: {found['recipe']}; {len(members)} x {found['width']} units"]
     learned = f"learned from {counted(len(found['learned_from']), 'trial')}"
@@ -211,7 +211,7 @@ def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -
 
 
 def ensemble_summary(result: LearnedEnsemble, found: dict[str, Any], folder: str, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     members = found["members"]
     lines = [f"ensemble of {len(members)} x {found['layers']} x {found['width']} units"]
     lines.append(f"learned from {counted(len(found['learned_from']), 'trial')}")

@@ -114,7 +114,7 @@ def notes(document: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def summary(document: Mapping[str, Any], model: str, *, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     lines = []
     if document["tried"]:
         kinds = list(document["tried"][0]["L_MSE"])

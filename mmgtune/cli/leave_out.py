@@ -75,7 +75,7 @@ def command(
 
 
 def summary(result: LeftOut, folder: str, report: bool = False) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     from ..fitting.comparison import rounded
     from .repeated import table
 

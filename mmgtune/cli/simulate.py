@@ -116,7 +116,7 @@ def _add_bands(rows: list[dict[str, Any]], ship: Uncertain, options: SimulateOpt
 
 
 def _text(result: dict[str, Any]) -> str:
-    """A run as a person wants to read it: what the report's tables hold, in their words and units."""
+    """Plain-text summary of a run: what the report's tables hold, in their words and units."""
     from ..report import measures
     from ..report.wording import run_words
 

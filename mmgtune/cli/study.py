@@ -69,7 +69,7 @@ def heading_keeping(
 
 
 def summary(document: Mapping[str, Any]) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     from ..heading_keeping import shares_of
 
     n = len(document["gains"])

@@ -126,7 +126,7 @@ def _refuse(options: VoyageOptions, run: WrittenOptions, no_report: bool) -> Non
 
 
 def summary(result: Validation) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     from .repeated import table
 
     lines = []

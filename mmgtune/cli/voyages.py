@@ -71,7 +71,7 @@ def on_voyages(
 
 
 def summary(result: VoyageValidation, folder: str, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
+    """Plain-text summary of the result."""
     found = result.to_dict()
     lines = [found["verdict"]]
     if result.n_windows:

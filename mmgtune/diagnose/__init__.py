@@ -14,6 +14,16 @@ runs, hierarchy, by_run, elsewhere    what differs from run to run: groups, evid
 voyages, legs     windows of logs of hours; what differs from voyage to voyage
 evidence          residual forces and short horizons, before any cause
 whereabouts       where an error lives that nothing explains; narrow: whether the box of the targets is in the way
+
+Words of these modules:
+
+bench   ``Workbench``: trials, model with every effect, box and noise, on which everything is fitted
+point   a fitted model on the bench: what was free, its values, initial states and chi-squared
+look    one round of the search at a point: scores of all hypotheses, refits of the best, a decision
+leeway  how far a coefficient that is not tuned may move about the profile's value: some per cent
+trace   a cause that is there by the statistics and that a user would not notice; in no profile
+aside   a trace with its contribution, as it was set aside
+kin     hypotheses that act much like the best one, and may be meant instead
 """
 
 import sys

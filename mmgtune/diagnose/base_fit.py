@@ -17,13 +17,13 @@ QUICK = 20
 """Steps from each."""
 
 BEST = 3
-"""Ends of these that are gone on from, where they differ."""
+"""Ends of the quick steps that are continued, where they differ."""
 
 SAME = 1e-3
-"""Relative difference of what is made small within which two of them are one."""
+"""Relative difference of the objective within which two ends are the same."""
 
 ROUGHLY = 20.0
-"""Fall of chi-squared that counts as none there."""
+"""Fall of chi-squared that counts as none in the quick steps."""
 
 AGAIN = 8
 """Times the base fit may begin again where it ended."""
@@ -32,13 +32,14 @@ PRECISE = 0.02
 """Fall of chi-squared that counts as none where parameters are reported."""
 
 OF_EXCESS = 1e-4
-"""The same as a share of what is left beyond the noise: where much is, its last digits choose nothing."""
+"""Fall that counts as none, as a share of chi-squared beyond the noise: where much is left, its last digits decide
+nothing."""
 
 
 def base_fit(bench: Workbench) -> Point:
     """The targets re-tuned without any effect: from several starts, in larger steps of the integration at first.
 
-    Initial states are estimated from the first: on long runs those that were measured, noise and all, lead astray.
+    Initial states are estimated from the beginning: noise of the measured ones leads long runs astray.
     """
     names = bench.targets
     rng = np.random.default_rng(bench.options.seed)
@@ -62,5 +63,5 @@ def base_fit(bench: Workbench) -> Point:
 
 
 def unnoticed(bench: Workbench, chi2: float, least: float = TOLERANCE) -> float:
-    """Fall of chi-squared that counts as none where it is as large as this."""
+    """Fall of chi-squared that counts as none, where chi-squared has this value."""
     return max(least, OF_EXCESS * (chi2 - bench.problem.n_residuals))

@@ -36,38 +36,38 @@ class Beliefs:
 
     @classmethod
     def of(cls, box: Box, loose: Sequence[str], share: float, shapes: Mapping[str, float]) -> Beliefs:
-        """Of coefficients known to a share of their values, and of forms with deviations in units of the profile."""
+        """Beliefs about coefficients known to a share of their values, and about forms with deviations in units of the
+        profile."""
         leeway = share * np.abs(box.part(loose).pre) / box.part(loose).width
         forms = {name: deviation / float(box.part([name]).width[0]) for name, deviation in shapes.items()}
         return cls(dict(zip(loose, leeway.tolist(), strict=True)), forms)
 
     @property
     def deviations(self) -> Mapping[str, float]:
-        """Of both."""
+        """Leeway and form deviations together."""
         return {**self.leeway, **self.forms}
 
     def form_of(self, effect: Effect) -> tuple[str, ...]:
-        """Parameters of the form of an effect that move with it."""
+        """Parameters of the form of an effect, which are free wherever the effect is."""
         return tuple(name for name in self.forms if name.startswith(f"{effect.kind}."))
 
     def moving_with(self, names: Sequence[str]) -> tuple[list[str], list[int]]:
-        """Forms of the effects among some names that are not there yet, and the places of those names that stay: all
-        but forms of effects that are not among them."""
+        """Form parameters that the effects among ``names`` still lack, and the indices of the names to keep: all but
+        form parameters of effects that are not among them."""
         moving = {split_name(base_of(name))[0] for name in names if name not in self.forms}
         asked = [name for name in self.forms if split_name(name)[0] in moving and name not in names]
         kept = [k for k, name in enumerate(names) if name not in self.forms or split_name(name)[0] in moving]
         return asked, kept
 
     def rows(self, names: Sequence[str]) -> tuple[list[int], FloatArray]:
-        """Places of names of which something is believed, and one row (n_those, n_names) for each: that of one
-        deviation."""
+        """Indices of the names with a belief (k,), and a row for each (k, n_names): 1 over its standard deviation."""
         deviations = self.deviations
         places = [k for k, name in enumerate(names) if name in deviations]
         return places, np.eye(len(names))[places] / np.array([deviations[names[k]] for k in places])[:, None]
 
 
 def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[str, ...]:
-    """Coefficients of a model beside the targets that are known no better than to some per cent."""
+    """Coefficients beside the targets that get leeway, as they are known to some per cent only."""
     there = [pattern for pattern in PATTERNS if any(fnmatchcase(name, pattern) for name in model.profile.names())]
     free = choose_targets(model, there, fixed)
     return tuple(name for name in free if name not in targets and model.profile.value(name) != 0.0)
@@ -85,7 +85,8 @@ def forms(model: Model, names: Sequence[str]) -> dict[str, float]:
 
 
 def in_words(share: float, effects: Sequence[Effect]) -> list[dict[str, str]]:
-    """What is believed with a leeway of so much, and beside effects that were found: name, value and note of each."""
+    """Rows on the leeway and on the forms of effects that were found, for the table of assumptions: name, value and
+    note."""
     if share <= 0.0:
         return []
     hull = {

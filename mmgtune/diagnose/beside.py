@@ -13,20 +13,20 @@ from .workbench import Point, Workbench
 
 
 def kept_free(point: Point, hypothesis: Hypothesis) -> list[int]:
-    """What stays free beside a hypothesis: all but the parameters it has itself, for all runs or for fewer, and the
-    targets it takes the place of."""
+    """Indices of the point's parameters that remain free when ``hypothesis`` is added: all but its own parameters, for
+    all runs or for fewer, and the targets that it replaces."""
     gone = {*hypothesis.bases, *hypothesis.instead}
     return [i for i, name in enumerate(point.names) if base_of(name) not in gone]
 
 
 def free_with(point: Point, hypothesis: Hypothesis) -> tuple[str, ...]:
-    """What is free with a hypothesis at a point, its own parameters last."""
+    """Names of the parameters that are free at a point with a hypothesis added, its own parameters last."""
     return (*(point.names[i] for i in kept_free(point, hypothesis)), *hypothesis.names)
 
 
 def origin(bench: Workbench, point: Point, names: Sequence[str]) -> FloatArray:
-    """(n_names,) where parameters stand in a point: their own value, that of all runs, or their null; of a factor, what
-    the target whose place it takes has become."""
+    """(n_names,) values of parameters at a point, in the unit cube: a parameter's own value, the value for all runs, or
+    its null; a factor that replaces a target begins at the re-tuned value of that target."""
     unit = dict(zip(point.names, point.unit, strict=True))
     null = bench.null(names)
     for k, name in enumerate(names):

@@ -48,7 +48,7 @@ Told = tuple[float, float | None]
 
 @dataclass(frozen=True, eq=False)
 class ByRun:
-    """Values of an effect that groups of runs have of their own.
+    """Values of an effect, one for each group of runs.
 
     by      the grouping; see ``runs``
     groups  labels of the groups
@@ -75,7 +75,7 @@ class ByRun:
         trials: Sequence[Trial],
         found: Mapping[str, Estimate],
     ) -> ByRun:
-        """Out of estimates by the name of the target."""
+        """From estimates by the name of the target."""
         order = sorted(groups)
         of_group = [[trial for trial in trials if f"{by}:{groups_of(trial)[by]}" == label] for label in order]
         ids = [tuple(dict.fromkeys(trial.whole for trial in own)) for own in of_group]
@@ -86,7 +86,7 @@ class ByRun:
 
     @property
     def unit(self) -> str:
-        """Of the first size."""
+        """Unit of the first size."""
         return self.effect.parameters[self.variant[0]].unit
 
     def size(self, k: int) -> Told:
@@ -101,7 +101,7 @@ class ByRun:
         return length, math.hypot(*share)
 
     def towards(self, k: int) -> Told | None:
-        """The direction of that [rad], where it has one."""
+        """The direction of a group's value [rad], where it has one."""
         pair = next((pair for pair in self.effect.told_as if set(pair) <= set(self.variant)), None)
         if pair is not None:
             north, east = (self.values[k][name] for name in pair)
@@ -125,7 +125,8 @@ class ByRun:
         return far > CERTAIN**2 + len(self._sizes)
 
     def from_mean(self, k: int) -> Told | None:
-        """How far the value of a group is from the mean of all, where all are known better so; else None."""
+        """Distance of a group's value from the mean of all, where these distances are known better than the values;
+        else None."""
         own = [one[self.variant[0]] for one in self.values]
         if len(self.variant) > 1 or len(own) < 2 or not all(self._better_apart(one) for one in own):
             return None
@@ -137,20 +138,22 @@ class ByRun:
 
     @property
     def goes_with(self) -> str:
-        """What was ordered in the runs that the values follow along a line, by no chance, with some of them: then it is
-        nothing of a run.  In words; "" for none.
+        """Order that the values of all groups follow along a straight line, beyond chance: then the cause goes with the
+        order, not with the run. In words; "" for none.
         """
         return self._following(lambda kinds: len(kinds) >= FEWEST_KINDS)
 
     @property
     def may_go_with(self) -> str:
-        """The same where there are two kinds of runs, some of each: they may as well have been run elsewhere."""
+        """Order that the values may follow where there are only two kinds of runs, some of each: these may also have
+        been run at different places."""
         return self._following(lambda kinds: len(kinds) == 2 and min(kinds) > 1)
 
     def _following(self, enough: Callable[[list[int]], bool]) -> str:
-        """What the values follow along a line, where there are enough runs of each kind; see ``goes_with``.
+        """Order that the values follow along a straight line, where there are enough runs of each kind; see
+        ``goes_with``.
 
-        Only of what has one size: two may follow anything.
+        Only for effects with one size: two may follow anything.
         """
         if len(self.variant) > 1:
             return ""
@@ -205,7 +208,7 @@ class ByRun:
 
     @property
     def _doubted(self) -> str:
-        """That something else than the run may be behind it, in words; "" for nothing."""
+        """Warning that something other than the run may be behind the values; "" for none."""
         if with_what := self.may_go_with:
             return f"; it goes with {with_what}, so that what changes with it would look the same"
         return ""

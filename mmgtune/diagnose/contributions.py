@@ -72,17 +72,17 @@ class Contribution:
     """What a cause brings, the others in place: everything is refitted without it.
 
     seen     share of the fall of chi-squared by all causes, on the trials looked at, that is lost without it
-    share    the same of the error on held-out trials
+    share    share of the error on held-out trials removed by all causes that is lost without it
     channels by channel, the error on held-out trials that it removes over the variance of the noise
     indices  by manoeuvring index, the largest change on held-out trials: of lengths as a share, of angles [deg]
-    form     such shares that the form of others may leave
-    own      by channel, such a share of the error in that channel alone
+    form     share that an error in the form of the other causes may leave
+    own      by channel, share of the error removed in that channel by all causes that is lost without it
     whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
-    bends    whether it has values of each run, which bend to what is elsewhere, on held-out trials too
-    slight   whether it is alone, of a size that is not worth speaking of, and nothing is noticed without it
+    bends    whether it has run-specific values, which can imitate other errors, on held-out trials too
+    slight   whether it is the only cause, of a size that is not worth reporting, and unnoticed when left out
     of_hull  share of what it explains that a hull further off than believed would explain; see ``explained_by_hull``
 
-    Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
+    Where ``seen`` alone shows that it is no trace, the other fields are not worked out: NaN and empty.
     """
 
     seen: float
@@ -103,9 +103,10 @@ class Contribution:
 
     @property
     def harmful(self) -> bool:
-        """Whether held-out trials are told no better with it than without.
+        """Whether held-out trials are predicted no better with it than without.
 
-        Where it shows in a channel of its own, the form of larger ones may add as much elsewhere as it removes there.
+        Where it shows in a channel of its own, errors in the form of larger causes may add as much in other channels as
+        it removes in that one.
         """
         return self.channels is not None and self.share <= (-HARDLY_SEEN if self.stands_out else 0.0)
 
@@ -117,9 +118,9 @@ class Contribution:
 
     @property
     def unnoticed(self) -> bool:
-        """Whether a user would notice nothing without it, or find held-out trials told no worse.
+        """Whether a user would notice nothing without it, or find held-out trials predicted no worse.
 
-        Nor is it more than a trace where the others, a little off in their form, would leave as much.
+        It is also unnoticed where the other causes, a little off in their form, would leave as much.
         """
         if self.like_hull:
             return True
@@ -138,7 +139,7 @@ class Contribution:
 
     @property
     def little(self) -> bool:
-        """Whether it is so little that it is named only if it is told from all others."""
+        """Whether it is so small that it is named only if it can be told from all other causes."""
         asked = self.channels is not None
         return asked and max(self.seen, self.share) < DOUBTFUL and not (self.stands_out or self.whole)
 
@@ -155,7 +156,8 @@ class Contribution:
 
 @dataclass(frozen=True, eq=False)
 class Aside:
-    """A cause that was set aside as a trace, with what was known of it, and the tags of those it is not told from."""
+    """A cause that was set aside as a trace, with its contribution, and the tags of the causes it cannot be told
+    from."""
 
     hypothesis: Hypothesis
     estimates: Mapping[str, Estimate]
@@ -167,7 +169,7 @@ class Aside:
     def of(
         cls, bench: Workbench, found: Found, cause: Hypothesis, brings: Contribution, alike: Sequence[str] = ()
     ) -> Aside:
-        """One of the causes that were found."""
+        """Contribution of one of the causes that were found."""
         sizes = estimates(bench, found.final)
         step = step_of(found, cause)
         p_value = step.refits[0].p_value if step else 0.0
@@ -175,17 +177,18 @@ class Aside:
 
 
 def contributions(bench: Workbench, found: Found, unseen: Unseen) -> list[Contribution]:
-    """That of each cause; a cause that is alone, or stands beside none but a finer integration step, brings all."""
+    """Contribution of each cause; a cause that is alone, or beside a finer integration step only, contributes
+    everything."""
     return _brought(bench, found, _fewer(bench, found), unseen)
 
 
 def _fewer(bench: Workbench, found: Found) -> list[Point]:
-    """What was found without one of its causes or another; nothing where there is but one."""
+    """What was found, refitted without each cause in turn; nothing where there is only one."""
     return [without(bench, found.final, cause) for cause in found.causes] if len(found.causes) > 1 else []
 
 
 def _brought(bench: Workbench, found: Found, fewer: Sequence[Point], unseen: Unseen) -> list[Contribution]:
-    """Contributions from fits without one cause or another."""
+    """Contributions from fits without each cause in turn."""
     if not fewer:
         return [Contribution(1.0) for _ in found.causes]
     seen = [share_lost(found.base.chi2, point.chi2, found.final.chi2) for point in fewer]
@@ -253,7 +256,7 @@ def with_only(bench: Workbench, found: Found, causes: Sequence[Hypothesis]) -> F
 
 
 def _alone(found: Found, unseen: Unseen) -> Contribution:
-    """That of the only cause, where the model without it leaves nothing but noise: a trace if it does harm."""
+    """Contribution of the only cause, where the model without it leaves nothing but noise: a trace if it does harm."""
     gain = measured(found, unseen)
     return Contribution(1.0, gain.share_removed[0], {}, {}) if gain.worse else Contribution(1.0)
 
@@ -280,7 +283,7 @@ class _HeldOut:
 
 
 def _held_out(found: Found, fewer: Sequence[Point], unseen: Unseen) -> list[_HeldOut]:
-    """What is held out, without one cause or another: a point each."""
+    """Errors on held-out trials, with one point for each cause left out."""
     all_of = [_HeldOut() for _ in fewer]
     for points, trials in unseen.fits((found.base, found.final, *fewer)) if fewer else ():
         base, final, *others = points

@@ -20,7 +20,7 @@ TWINS = 3
 
 
 def detectability(bench: Workbench, step: Step) -> list[Detectability]:
-    """The table for every named hypothesis, from the first look."""
+    """Detectability of every named hypothesis, from the first look."""
     named = [s for s in step.scores if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
     cosine = angles(step.linear, [s.hypothesis for s in named])
     found = []
@@ -46,11 +46,13 @@ def detectability(bench: Workbench, step: Step) -> list[Detectability]:
 
 
 def told_apart(linear: Linear, names: Sequence[str]) -> float:
-    """How far parameters of a typical size each are from anything else, in deviations of the noise: by the shortest of
-    their signatures at a tiny, a small and a typical size that show at all.
+    """Smallest signal-to-noise ratio over the hypothesis's signatures.
 
-    Of a large signature that bends, more is left in a linear problem than by a fit, which bends with it: of water 20 m
-    deep hundreds of deviations, and a hull with leeway follows it so that hardly any is.
+    Of parameters of a typical size, what re-tuning cannot imitate, in deviations of the noise: the shortest of the
+    signatures at a tiny, a small and a typical size that show at all.
+
+    A large effect that is not linear leaves more in the linear problem than after a fit: water 20 m deep leaves
+    hundreds of deviations there, though a refitted hull with leeway follows it almost entirely.
     """
     looks = (*linear.looks(names), linear.slopes(names))
     lengths = [float(np.linalg.norm(look, axis=0).min()) for look in looks]
@@ -58,7 +60,7 @@ def told_apart(linear: Linear, names: Sequence[str]) -> float:
 
 
 def _limit(bench: Workbench, name: str, sizes: float) -> float | None:
-    """Value of a parameter that many typical sizes from its null; None where no value of its range is enough."""
+    """Value of a parameter at ``sizes`` typical sizes from its null; None where no value of its range is that far."""
     parameter = parameter_of(bench.model, name)
     assert parameter is not None  # asked of parameters of effects only
     i = bench.box.names.index(name)

@@ -1,7 +1,7 @@
-"""What differs between runs, in runs that were held out: from a first part of each, and from what the others say.
+"""What differs between runs, estimated for runs that were held out.
 
-A current of a day says nothing of the next.  A run that was held out shows its own in what it does first; what it does
-after that is then a test.
+A current of one day says nothing of the next.  A held-out run shows its own current in its first part; the rest of the
+run is then a test.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from .runs import groups_of, labels_of, spread_key
 from .workbench import LOOSE, Point, Workbench
 
 FIRST = 0.4
-"""Share of a run that what differs between runs is estimated on where it was held out."""
+"""Share of a held-out run on which run-specific parameters are estimated."""
 
 
 def unknown(point: Point, trials: Sequence[Trial]) -> tuple[str, ...]:
-    """What a point has a value of each run of, for the runs of trials it has none of, as targets."""
+    """Run-specific parameters that ``point`` lacks for these trials."""
     keys = dict.fromkeys((base_of(name), group_of(name).partition(":")[0]) for name in point.names if group_of(name))
     bases: dict[str, list[str]] = {}
     for base, by in keys:
@@ -36,15 +36,15 @@ def unknown(point: Point, trials: Sequence[Trial]) -> tuple[str, ...]:
 
 
 def first_part(point: Point, trials: Sequence[Trial]) -> IntArray:
-    """(n_trials,) samples of each that something is estimated on, 0 where nothing has to be."""
+    """(n_trials,) samples of each trial on which run-specific parameters are estimated, 0 where there are none."""
     groups = {group_of(name) for name in unknown(point, trials)}
     return np.array([int(FIRST * trial.n_samples) if groups & labels_of(trial) else 0 for trial in trials])
 
 
 def estimated_there(bench: Workbench, point: Point, trials: Sequence[Trial]) -> Point:
-    """The point with what differs between runs estimated for these, from the first part of each.
+    """The point with run-specific parameters estimated for these trials, from the first part of each.
 
-    Values are expected about the mean of those that are known, as far off as these are.
+    Values are expected about the mean of those of the other runs, with the spread of these.
     """
     names = unknown(point, trials)
     if not names:

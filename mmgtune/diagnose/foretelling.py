@@ -1,4 +1,4 @@
-"""What a step of a hypothesis from a start promises, before anything is refitted."""
+"""Predicted gain of a step of a hypothesis from a start, before anything is refitted."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Foretelling:
         return np.asarray(self._problem.residuals(np.array([*self._here.values()])[:, None])[0])
 
     def _simulated(self, columns: Sequence[Mapping[str, float]]) -> tuple[FloatArray, BoolArray]:
-        """What re-tuning leaves of the residuals (n_rows, k), and which runs are lost."""
+        """Residuals with re-tuning projected out (n_rows, k), and which runs diverge."""
         runs = self._problem.residuals(np.array([[*column.values()] for column in columns]).T).T
         lost = np.asarray(~np.isfinite(runs).all(axis=0))
         runs[:, lost] = self._as_it_is[:, None]
@@ -51,7 +51,7 @@ class Foretelling:
 
     def _steps(self, hypothesis: Hypothesis, starts: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """From starts (n_names, n_starts): the step of the own parameters (n_own, n_starts), within the cube,
-        chi-squared at the starts, inf where a run is lost, and that foretold."""
+        chi-squared at the starts, inf where a run diverges, and the predicted chi-squared."""
         own = hypothesis.names
         columns: list[Mapping[str, float]] = []
         for start in starts.T:

@@ -35,7 +35,8 @@ RELEVANT = 0.05
 """Error beyond noise that is worth speaking of, as a share of the noise."""
 
 BAND = 3.0
-"""How many times what is expected of uncertain coefficients these may bring: few directions count."""
+"""Multiple of the chi-squared expected from uncertain coefficients up to which they may be behind it: few directions
+count."""
 
 WORSE = 0.1
 """Share by which causes may make the error on test trials larger by chance."""
@@ -47,8 +48,8 @@ MOST = 0.9
 """Share of the error above noise on held-out trials that the right causes remove at least."""
 
 MOST_RUNS, FAR_BEYOND = 2.0 / 3.0, 10.0
-"""Share of the runs, at least two, that the others tell to their noise with the right causes, and how many times what
-noise may bring these err without."""
+"""Share of the runs, at least two, that the others predict to within noise with the right causes; and the error of
+these runs without the causes, as a multiple of what noise may bring."""
 
 HeldOut = Literal["test", "each", "only"]
 HELD_OUT: dict[HeldOut, str] = {
@@ -56,10 +57,10 @@ HELD_OUT: dict[HeldOut, str] = {
     "each": "each trial in turn",
     "only": "the trials themselves: there is only one",
 }
-"""What the gain is measured on, in words."""
+"""Trials the gain is measured on, in words."""
 
 LOST = 1e12
-"""Squares of a run that left the world."""
+"""Sum of squares that stands for a diverged run."""
 
 INDICES = ("tactical_diameter_m", "advance_m", "overshoot_1_deg", "overshoot_2_deg")
 """Indices whose errors are reported."""
@@ -72,11 +73,11 @@ class Gain(Brief):
     held_out    the test trials; each in turn where there are none; the only one where there is but one
     compared    every held-out trial, "before" and "after"
     excess      (n_trials, 2) chi-squared beyond the noise of the sensors, freed of its memory, before and after
-    floor       chi-squared that noise brings to all of them
-    chance      deviation of that
+    floor       chi-squared of all held-out trials by noise alone
+    chance      standard deviation of chi-squared by noise alone
     first_part  share of each run that what differs between runs was estimated on; ``excess`` counts what follows alone
-    unsure      chi-squared to be expected beyond noise because coefficients and winds are known no better; 0 where it
-                was not asked for, as nothing remains
+    unsure      chi-squared expected beyond noise from the uncertainty of coefficients and winds; 0 where nothing
+                remains to be explained and it was not worked out
     """
 
     held_out: HeldOut
@@ -89,28 +90,29 @@ class Gain(Brief):
 
     @property
     def remains(self) -> bool:
-        """Whether the causes leave on held-out trials more than noise, and not much less than there was, nor tell most
-        runs to their noise."""
+        """Whether the causes leave more than noise on held-out trials, remove less than ``MOST`` of the error there,
+        and do not predict most runs to within noise."""
         left = self.leaves_beside(BAND * self.unsure) and self.share_removed[0] < MOST
         return left and not self.tells_most_runs
 
     def leaves_beside(self, excused: float = 0.0) -> bool:
-        """Whether the causes leave on held-out trials more than noise and so much chi-squared."""
+        """Whether the causes leave more on held-out trials than noise and ``excused`` chi-squared."""
         return float(self.excess[:, 1].sum()) > RELEVANT * self.floor + 3.0 * self.chance + excused
 
     @property
     def tells_most_runs(self) -> bool:
-        """Whether most of several runs are told to their noise by the others, and none worse than without causes."""
+        """Whether most of several runs are predicted to within noise by the others, and none worse than without
+        causes."""
         told, runs = self.runs_told
         return told > 1 and told >= MOST_RUNS * runs
 
     @cached_property
     def runs_told(self) -> tuple[int, int]:
-        """Of the runs left out in turn those that the others tell to their noise with the causes, and far beyond it
-        without; and of how many.  None where a run is told worse with them, by more than coefficients known no better
-        would bring.
+        """Runs left out in turn that the other runs predict to within noise with the causes, and far from it without;
+        and the number of runs. None where a run is predicted worse with the causes, by more than uncertain coefficients
+        explain.
 
-        What a single run shows of coefficients the others do not tell: it is told badly whatever the cause.
+        Coefficients that only a single run determines make it badly predicted by the others, whatever the cause.
         """
         runs = [one.trial.run for one in self.compared]
         if self.held_out != "each":
@@ -128,24 +130,26 @@ class Gain(Brief):
 
     @property
     def left(self) -> float:
-        """Error that the causes leave on held-out trials, over the noise of the sensors; that is in it."""
+        """Error that the causes leave on held-out trials, over the noise of the sensors, which it includes."""
         return float(np.sqrt(1.0 + max(float(self.excess[:, 1].sum()), 0.0) / self.floor))
 
     @property
     def missed(self) -> bool:
-        """Whether test trials are told so badly that something is wrong which the others do not show."""
+        """Whether test trials are predicted so badly that something is wrong which the other trials do not show."""
         return self.held_out == "test" and self.remains and self.left > MISSED
 
     @property
     def too_few(self) -> bool:
-        """Whether the others tell a run badly: where all together are fitted, they are too few for what is re-tuned."""
+        """Whether the other runs predict a run badly that is fitted well together with them: they are too few for what
+        is re-tuned."""
         return self.held_out == "each" and self.left > MISSED
 
     @property
     def worse(self) -> bool:
-        """Whether test trials are told worse with the causes than by chance, all together and most of them.
+        """Whether test trials are predicted worse with the causes than without, beyond chance, all together and most of
+        them.
 
-        Held-out error alone does not tell where each run is left out: the targets themselves are known too badly then.
+        Held-out error alone is no evidence where each run is left out: the targets themselves are known too badly then.
         """
         before, after = self.excess.sum(axis=0).tolist()
         most = float(np.mean(self.excess[:, 1] > self.excess[:, 0])) > 0.5
@@ -153,7 +157,7 @@ class Gain(Brief):
 
     @property
     def mostly_remains(self) -> bool:
-        """Whether the causes leave more than half of the error on test trials, and that is more than was to expect."""
+        """Whether the causes leave more than half of the error on test trials, and more than was to be expected."""
         return self.held_out == "test" and self.remains and self.share_removed[0] < 0.5
 
     @property
@@ -173,7 +177,7 @@ class Gain(Brief):
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """That interval, None where there is but one trial and nothing tells how much trials differ."""
+        """Interval of ``share_removed``; None for a single trial, as nothing tells how much trials differ."""
         return self.share_removed[1:] if len(self.excess) > 1 else None
 
     def measures(self, which: str) -> dict[str, float]:
@@ -189,7 +193,7 @@ class Gain(Brief):
 
     @property
     def of_runs_in_words(self) -> str:
-        """What was taken there for what differs between runs."""
+        """What stood for run-specific parameters on held-out trials, in words."""
         if not self.first_part:
             return "Nothing is taken for a single run: what is held out has the values of all."
         return (
@@ -258,10 +262,9 @@ def held_out(found: Found, unseen: Unseen) -> Gain:
 
 
 def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
-    """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better, nor a
-    wind that blows.
+    """Chi-squared expected on unseen trials from parameter and wind uncertainty alone (median over draws).
 
-    The median of draws of all that, initial states re-estimated to first order.  Where trials turn to one side only,
+    Initial states are re-estimated to first order in each draw.  Where trials turn to one side only,
     coefficients of the other are anywhere in their box.
     """
     names, spread = covariance(bench, found.final)
@@ -308,7 +311,7 @@ def _with_other_ties(
 
 
 def measured(found: Found, unseen: Unseen) -> Gain:
-    """The gain as ``held_out`` has it, without what is expected of coefficients that are known no better."""
+    """The gain as by ``held_out``, with ``unsure`` left at 0."""
     bench, test = unseen.bench, unseen.test
     if test:
         compared, excess = _on(bench, found.base, found.final, test)
@@ -327,12 +330,13 @@ def measured(found: Found, unseen: Unseen) -> Gain:
 
 
 def _share_used(point: Point, trials: Sequence[Trial]) -> float:
-    """Share of each run that something is estimated on."""
+    """Share of each run on which run-specific parameters are estimated."""
     return FIRST if first_part(point, trials).any() else 0.0
 
 
 def _chance(bench: Workbench, trials: Sequence[Trial], point: Point | None = None) -> tuple[float, float]:
-    """Expectation and deviation of chi-squared by noise alone, on what follows the part something is estimated on."""
+    """Expectation and deviation of chi-squared by noise alone, on the samples after the part that run-specific
+    parameters are estimated on."""
     used = 0 if point is None else int(first_part(point, trials).sum())
     return _by_noise(bench, sum(trial.n_samples for trial in trials) - used)
 
@@ -363,7 +367,7 @@ def _counted(bench: Workbench) -> Mapping[str, ChannelNoise]:
 
 
 def _freeing(bench: Workbench, problem: FitProblem) -> Callable[[FloatArray], FloatArray] | None:
-    """What frees residuals (n_residuals, ...) of it; None where they are not."""
+    """The map that frees residuals (n_residuals, ...) of the memory of noise; None where this is not done."""
     return replace(bench.noise, cases=problem.cases).apply if _is_freed(bench) else None
 
 

@@ -15,10 +15,10 @@ import numpy as np
 from ..arrays import FloatArray
 
 STEPS = 24
-"""Spreads that are tried, from one that nothing would show to one that nothing would hold back."""
+"""Number of spreads tried, from one too small to matter to one so large that it does not constrain the values."""
 
 ROUGHLY = 8
-"""The same for simulated data, of which there are thousands."""
+"""Number of spreads tried for simulated data, of which there are thousands of sets."""
 
 ROUNDING = 1e-13
 """Share of the largest variance of noise below which another one is not told from none."""
@@ -46,7 +46,7 @@ class Spread:
 class Hierarchy:
     """The linear problem r = -A b + noise, with b = X m + u, u normal of one spread.
 
-    shown  (k, n_groups * n_parameters) A in an orthonormal basis of what it shows, group by group
+    shown  (k, n_groups * n_parameters) A in an orthonormal basis of its columns, group by group
     noise  (k, k) covariance of the residual there
     n_parameters  of a group
     """

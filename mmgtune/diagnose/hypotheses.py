@@ -48,12 +48,13 @@ class Hypothesis:
 
     @property
     def bases(self) -> tuple[str, ...]:
-        """Parameters, whatever runs they are of."""
+        """Parameters without the groups of runs they are of."""
         return tuple(f"{self.effect.kind}.{name}" for name in self.variant)
 
     @property
     def instead(self) -> tuple[str, ...]:
-        """Coefficients of the profile that do the same; where they are targets, this takes their place."""
+        """Coefficients of the profile that have the same effect; where they are targets, the hypothesis replaces
+        them."""
         return tuple(self.effect.absorbed[name] for name in self.variant if name in self.effect.absorbed)
 
     @property
@@ -121,7 +122,8 @@ def hypotheses(
     measured       what any trial has of wind, current and so on; only then do parameters act that take it from there,
                    and those that stand in for it do not
     present        parameters that the profile itself has already, at other than their null
-    in_place       those that do the same as a target instead, and so would take its place; none out of many
+    in_place       whether to return the hypotheses that do the same as a target and would replace it, instead of the
+                   others; none of many
     """
     found = []
     for effect in model.effects:
@@ -140,7 +142,7 @@ def hypotheses(
 
 
 def of_runs(known: Sequence[Hypothesis], trials: Sequence[Trial]) -> list[Hypothesis]:
-    """Those of some hypotheses whose parameters may differ between runs, with values for each group of them."""
+    """Hypotheses whose parameters may differ between runs, with a value for each group of runs."""
     return [
         Hypothesis(one.effect, one.variant, by, groups)
         for by, groups in groupings(trials).items()

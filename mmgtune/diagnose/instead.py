@@ -1,4 +1,4 @@
-"""One cause in the place of re-tuning: coefficients that are re-tuned can take up a cause, and then none shows."""
+"""A single cause instead of re-tuning: re-tuned coefficients can absorb a cause, which then does not show."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NEARLY = 0.85
 """Share of what re-tuning removes that a cause alone must remove."""
 
 OF_OTHERS = 1.0 / 3.0
-"""Share of what it leaves of that, over what the next best of another effect leaves, at most."""
+"""Largest ratio of the error it leaves to the error that the next best other effect leaves."""
 
 MATTERS = 1.0 - (1.0 - NEARLY) / OF_OTHERS
 """Share of what re-tuning removes that a cause must promise to be followed to its end: less changes no answer."""
@@ -38,7 +38,8 @@ her profile in many ways; and the share of what that one leaves that the best ma
 
 @dataclass(frozen=True)
 class Instead:
-    """A cause that does alone, all coefficients being the profile's, most of what re-tuning does.
+    """A cause that alone removes most of the error that re-tuning removes, with all coefficients at the profile's
+    values.
 
     words       the cause as a sentence without its full stop
     share       of the fall of chi-squared by re-tuning that it brings
@@ -76,11 +77,11 @@ class Instead:
 
 
 def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypothesis]) -> Instead | None:
-    """What one of the hypotheses does alone where re-tuning did much, and no other does nearly as well.
+    """The cause that alone does nearly as much as re-tuning, where re-tuning did much and no other cause comes near.
 
     tuned  the model re-tuned without any cause
 
-    There is no answer where it is stopped.
+    None where there is no such cause, or the search was stopped.
     """
     if not bench.targets:
         return None

@@ -64,7 +64,7 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
 
 
 def covariance(bench: Workbench, point: Point, *, at_bounds: bool = False) -> tuple[tuple[str, ...], FloatArray]:
-    """What is free inside its bounds and the same for all runs, and how well it is known: (n, n) in the unit cube.
+    """Parameters free within their bounds and common to all runs, and their covariance (n, n) in the unit cube.
 
     Directions that no trial tells end at the box, everywhere in which is equally likely beforehand.
 
@@ -86,8 +86,8 @@ def covariance(bench: Workbench, point: Point, *, at_bounds: bool = False) -> tu
 
 
 def _told(bench: Workbench, point: Point, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What residuals tell of what is free, all else re-tuned: the triangle of its columns, what noise has along these,
-    and a step of each column in the unit cube."""
+    """Information of the residuals on the free parameters, all else re-tuned: the triangle R of their columns, the
+    covariance of noise along these, and the step of each column in the unit cube."""
     linear = linearise(bench, point, apart=names)
     Q, R = np.linalg.qr(linear.columns(names))
     by_block, by_trial = linear.chance(Q)
@@ -132,7 +132,7 @@ def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: 
 
 
 def _apart(names: Sequence[str], covariance: FloatArray) -> dict[str, float]:
-    """Variance of the distance of each value of single runs from the mean of the like, in the unit cube."""
+    """Variance of the distance of each run-specific value from the mean over the runs, in the unit cube."""
     found = {}
     for base in dict.fromkeys(base_of(name) for name in names if group_of(name)):
         rows = [i for i, name in enumerate(names) if base_of(name) == base and group_of(name)]

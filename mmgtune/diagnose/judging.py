@@ -1,4 +1,4 @@
-"""What is made of what a search found: the answer with its causes, their rivals and what they gain."""
+"""From the outcome of a search to the answer: its causes, their rivals and what they gain."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ OF_ANOTHER_FORM = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Judge:
-    """What every answer of one diagnosis shares.
+    """Makes answers from outcomes of the search; holds what all answers of a diagnosis share.
 
     profile, options, provenance  as given
     asked     hypotheses that were looked for, and those that do the same as a target
@@ -66,8 +66,7 @@ class Judge:
     differing: Sequence[Difference]
 
     def answer(self, found: Found, brought: Sequence[Contribution]) -> tuple[Diagnosis, Found]:
-        """The answer, and the causes it is about: those found, or fewer of them where these are not believed and those
-        are.
+        """The answer, and the causes it is about: those found, or a smaller set where only that is believed.
 
         brought  what each cause contributes
         """
@@ -99,7 +98,8 @@ class Judge:
     def _without_doubtful(
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]
     ) -> tuple[Diagnosis, Found]:
-        """The answer without what is little and not told from others, the least first, where it holds without."""
+        """The answer without small causes that cannot be told from others, the smallest first, as long as it holds
+        without them."""
         while result.groups and result.names_causes and len(found.causes) > 1 and not self.hooks.stop():
             groups = {tag: others for tag, *others in result.groups}
             doubtful = [
@@ -170,7 +170,7 @@ class Judge:
         )
 
     def _compared(self, result: Diagnosis, found: Found) -> Diagnosis:
-        """With what these trials cannot tell from the causes, where these are believed."""
+        """The answer with the rivals that these trials cannot tell from its causes, where these are believed."""
         if result.verdict in ("unexplained", "interrupted") or not found.causes:
             return result
         self.hooks.on_phase("comparing the causes with their rivals")
@@ -199,7 +199,7 @@ def _fewer(result: Diagnosis, found: Found) -> list[tuple[list[Hypothesis], Doub
 
 
 def _first(found: Found) -> Point:
-    """The model re-tuned before anything was put right."""
+    """The re-tuned model before any correction of integration step or inputs."""
     as_given = found.held is None and found.finer_step is None
     return found.base if as_given else found.steps[0].base
 

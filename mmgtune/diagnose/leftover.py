@@ -33,7 +33,8 @@ NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
 
 CLEARLY = 0.15
-"""The same from which one sensor may be said to err alone: a form that is a little off shows first in the best log."""
+"""Variance beyond noise from which one sensor may be said to err alone: a model form that is a little off shows first
+in the best log."""
 
 NEARLY_ALL, MOST = 0.95, 0.75
 """Share of what all channels have beyond their noise from which it is of one sensor alone; where it is noticed in no
@@ -88,10 +89,10 @@ class Leftover(Brief):
 
     excess     variance of all residuals beyond the white noise of the sensors and what the logged inputs leave open, as
                a share of that noise
-    channels   the same by channel
+    channels   ``excess`` by channel
     alike      correlation of what heading and yaw rate say, and of what position and velocity say, over the window
                where it is clearest
-    certainty  the same in standard errors
+    certainty  ``alike`` in standard errors
     explained  by channel, the largest share one quantity explains, and which
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     changed    channels, "u" and "r", whose factor changes within trials, by their ids: of those alone whose noise as
@@ -99,7 +100,7 @@ class Leftover(Brief):
     left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
     slows      by channel, variance that the noise as estimated has in a part that fades slowly, as a share of the white
                one: part of ``channels``, and noise of the sensors where what is left has no structure
-    at_most    the same where it was estimated too small
+    at_most    upper limit of ``slows``, as it may have been estimated too small
     """
 
     excess: float

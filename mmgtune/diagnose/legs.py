@@ -27,7 +27,7 @@ from .wording import quantity
 from .workbench import Point, Workbench
 
 ITERATIONS = 3
-"""Gauss-Newton steps before noise is estimated anew, and after."""
+"""Gauss-Newton steps before noise is estimated again, and after."""
 
 Pattern = Literal["none", "one", "each", "trend"]
 PATTERNS: dict[Pattern, str] = {
@@ -36,14 +36,14 @@ PATTERNS: dict[Pattern, str] = {
     "each": "one for each voyage",
     "trend": "a trend from voyage to voyage",
 }
-"""What there may be, in words."""
+"""Patterns of difference between voyages, in words."""
 
 
 @dataclass(frozen=True)
 class Quantity:
     """Something that may differ from voyage to voyage: parameters of an effect.
 
-    absorbed  the coefficient that does the same for all voyages, "" for none
+    absorbed  the coefficient that has the same effect for all voyages, "" for none
     trends    whether it may grow with the voyages
     """
 
@@ -62,21 +62,21 @@ QUANTITIES = (
     Quantity("current", ("north", "east")),
     Quantity("resistance", ("factor",), absorbed="hull.R_0", trends=True),
 )
-"""What is looked at."""
+"""Quantities that may differ between voyages."""
 
 LEG_NAMES = tuple(name for one in QUANTITIES for name in one.names)
 
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """What was found of one quantity.
+    """How one quantity differs between voyages.
 
     pattern   that is believed
     evidence  gain in chi-squared over its inflation less its cost by BIC, by pattern, beside the others as believed
     unit      of the parameters
     values    (n_voyages, n_parameters) one for each voyage; relative to their mean where ``relative``
     stderr    of them, likewise; NaN where the windows of a voyage do not tell
-    common    one for all with standard errors, None where a coefficient does the same
+    common    value for all voyages with standard errors, None where a coefficient has the same effect
     trend     change per voyage with its standard error, by parameter; empty where it cannot have one
     explained share of the error above noise that the pattern removes, beside the others as believed
     """
@@ -190,7 +190,7 @@ def differences(bench: Workbench, point: Point, voyages: Sequence[str]) -> tuple
 
 @dataclass(frozen=True, eq=False)
 class _Held:
-    """Where the problem is made linear.
+    """The point at which the problem is made linear.
 
     unit    (n_free,) position of what is free for all voyages alike
     values  (n_voyages, n_names) of what has a value of each voyage, in the unit cube
@@ -410,7 +410,7 @@ class _Linear:
 
 
 def _believed(held: _Held, linear: _Linear, voyages: tuple[str, ...]) -> tuple[Difference, ...]:
-    """The patterns that explain the most for what they cost, and those alone that earn their place."""
+    """The patterns with the most evidence, each simplified as long as the loss of evidence is not decisive."""
     inflation = linear.inflation()
     price = math.log(held.bench.problem.n_residuals)
 
@@ -502,7 +502,7 @@ def _covariance(A: FloatArray, inflation: float) -> FloatArray:
 
 
 def _doubt(held: _Held, linear: _Linear, q: Quantity, chosen: Sequence[Pattern], inflation: float) -> float:
-    """Relative standard error of what a quantity is absorbed by; 0 where that is held."""
+    """Relative standard error of the coefficient that absorbs a quantity; 0 where it is held."""
     if not held.retuned(q):
         return 0.0
     at = held.free.index(q.absorbed)

@@ -29,7 +29,7 @@ SMALL = 0.1
 """A small size of an effect, as a share of the typical one."""
 
 TINY = 1e-3
-"""The same so small that nothing bends."""
+"""Size of an effect at which the response is linear, as a share of the typical one."""
 
 ACTS = 0.5
 """Share of the change at a small size, in proportion, from which an effect acts at a tiny one: a lag within the step of
@@ -39,8 +39,8 @@ BLOCK = 60.0
 """Length [s] of the pieces noise is resampled in."""
 
 BOXED = 0.5
-"""Standard deviation of a target, as a share of its box, where the size of a cause is asked for: what only targets far
-outside their box could imitate is known."""
+"""Standard deviation of a target, as a share of its box, when the size of a cause is estimated: targets far outside
+their box are not allowed to imitate it."""
 
 SAME = 1e-5
 """Directions whose signatures are shorter than this share of the longest are numerical noise."""
@@ -48,8 +48,8 @@ SAME = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Tuned:
-    """What re-tuning takes out of columns: all that free coefficients can change, and so much of what coefficients with
-    leeway can change as these are expected to.
+    """The part of columns that re-tuning explains: all that free coefficients can change, and of what coefficients with
+    leeway can change as much as they are expected to move.
 
     free   (n_rows, n) orthonormal basis of what free coefficients can change
     loose  (n_rows, k) directions of what coefficients with leeway change besides
@@ -68,8 +68,8 @@ class Tuned:
         return cls(Q, directions, 1.0 / np.sqrt(1.0 + sizes**2))
 
     def out_of(self, columns: FloatArray) -> FloatArray:
-        """Columns (n_rows, k) without that; independent noise of variance 1 and what has leeway together have variance
-        1 in what is left."""
+        """Re-tuning projected out of ``columns`` (n_rows, k); independent noise of variance 1 and coefficients with
+        leeway together have variance 1 in the result."""
         rest = columns - self.free @ (self.free.T @ columns)
         return np.asarray(rest - self.loose @ ((1.0 - self.left)[:, None] * (self.loose.T @ rest)))
 
@@ -92,9 +92,9 @@ class Linear:
     residual    (n_rows,) less what free coefficients and initial states explain
     names       parameters with a signature
     signature   (n_rows, n_names) likewise, for one typical size of each
-    one_sided   those of them whose null is an end of their range
-    small       (n_rows, n_one_sided) signatures of those over a small size, as if grown to a typical one
-    tiny        the same over one so small that nothing bends, if the effect acts there
+    one_sided   parameters whose null is an end of their range
+    small       (n_rows, n_one_sided) signatures of one-sided parameters over a small size, scaled to a typical one
+    tiny        as ``small``, over a size so small that the response is linear, if the effect acts there
     share       (n_names,) of the signature's length that re-tuning leaves
     noise       (n_rows,) the residual less all signatures: hardly anything but noise
     wander      (n_rows, DRAWS) what other noise of the logged inputs would change
@@ -104,8 +104,8 @@ class Linear:
     plain       signatures (n_rows,) of what may differ between runs, by name, coefficients not taken out
     groups      of each trial
     retuned     what re-tuning leaves of changes of whitened residuals (n_residuals, k): (n_rows, k)
-    fitted      what is left of them besides where all signatures are free: (n_rows, k) free of all ``noise`` is free of
-    kept        what was worked out from it once
+    fitted      as ``retuned``, with all signatures projected out too, as they are out of ``noise``: (n_rows, k)
+    kept        cache of derived quantities
     """
 
     residual: FloatArray
@@ -152,21 +152,21 @@ class Linear:
         return self.tuned.out_of(found)
 
     def absent(self, names: Sequence[str]) -> list[str]:
-        """Those of some parameters that are not free already."""
+        """The given parameters that are not free already."""
         return [name for name in names if name in self.names]
 
     def looks(self, names: Sequence[str]) -> list[FloatArray]:
-        """What some parameters may look like, each (n_rows, n_parameters): at a typical size and, where it differs, at
-        a small one."""
+        """Signatures of some parameters, each (n_rows, n_parameters): at a typical size and, where these differ, at a
+        small one."""
         names = self.absent(names)
         return [self.columns(names), *([self._over(self.small, names)] if set(names) & set(self.one_sided) else [])]
 
     def slopes(self, names: Sequence[str]) -> FloatArray:
-        """(n_rows, n_parameters) what some parameters look like at sizes at which nothing bends."""
+        """(n_rows, n_parameters) signatures of some parameters at sizes so small that the response is linear."""
         return self._over(self.tiny, self.absent(names))
 
     def _over(self, sizes: FloatArray, names: Sequence[str]) -> FloatArray:
-        """Signatures of some parameters, those with one side only over other sizes, (n_rows, n_one_sided)."""
+        """Signatures of some parameters, with the one-sided ones over another size, (n_rows, n_one_sided)."""
         found = self.columns(names)
         for i, name in enumerate(names):
             if name in self.one_sided:
@@ -174,10 +174,10 @@ class Linear:
         return found
 
     def chance(self, Q: FloatArray, own: bool = False) -> tuple[FloatArray, FloatArray]:
-        """What noise has along orthonormal directions Q (n_rows, k): by block (n_blocks, k), by trial and draw of the
-        input noise (n_cases, DRAWS, k).
+        """Components of the noise along orthonormal directions Q (n_rows, k): by block (n_blocks, k), and by trial and
+        draw of the input noise (n_cases, DRAWS, k).
 
-        own  whether ``noise`` still holds what lies along these directions themselves, which is no noise then
+        own  whether ``noise`` still holds the signal along these directions, which is then taken out first
         """
         noise = self.noise - Q @ (Q.T @ self.noise) if own else self.noise
         by_block = np.add.reduceat(Q * noise[:, None], self.blocks, axis=0)
@@ -354,7 +354,8 @@ def linearise(
 
 
 def unit_of(bench: Workbench, name: str) -> float:
-    """What a column of something free is over, in the unit cube: of a parameter of an effect a typical size."""
+    """Step in the unit cube that a column of a free parameter stands for: a typical size for a parameter of an
+    effect."""
     return 1.0 if parameter_of(bench.model, name) is None else typical(bench, name)
 
 

@@ -20,7 +20,7 @@ _NUMBERS = ("no cause", "one cause", "two causes", "three causes")
 
 @dataclass(frozen=True)
 class Record:
-    """Of answers of a kind, how many there were in the study, and how many were right."""
+    """Number of answers of a kind in the study, and how many of them were right."""
 
     kind: str
     right: int
@@ -61,6 +61,6 @@ def _known() -> dict[str, dict[str, int]]:
 
 
 def record_of(kind: str) -> Record:
-    """That of a kind of answer; of none where the study has none."""
+    """The record of a kind of answer; of zero answers where the study has none."""
     found = _known().get(kind, {"right": 0, "of": 0})
     return Record(kind, found["right"], found["of"])

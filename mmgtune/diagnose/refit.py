@@ -50,7 +50,7 @@ class Refit:
     unvisited: str = ""
 
     def beats(self, other: Refit) -> bool:
-        """Whether this explains so much more that the other is out of the question.
+        """Whether this refit explains so much more that the other is out of the question.
 
         One value for all runs need not fit better than values of each run do: these are charged for what they could
         have been, not by their number.  What chance would bring, along a signature that noise has much of, is no rival
@@ -65,7 +65,7 @@ class Refit:
         return (better >= BETTER or bool(simpler)) and better - self.cost + other.cost >= ENOUGH
 
     def by_chance(self, level: float) -> bool:
-        """Whether chance brings as much, at this probability, or its parameters are worth as much."""
+        """Whether chance brings as large a gain at this probability level, or its evidence is less than ``ENOUGH``."""
         return self.p_value > level or self.evidence < ENOUGH
 
     def _hardly_above(self, other: Refit) -> bool:
@@ -74,7 +74,8 @@ class Refit:
 
 
 def believable_first(refits: list[Refit], level: float) -> list[Refit]:
-    """The best that is about what the trials visit in front, unless it is far from as good as the best of all.
+    """Refits with the best one that concerns what the trials visit in front, unless it is far worse than the best of
+    all.
 
     Noise may have so much of a signature that chance brings more of it than a true cause brings of another: where that
     is so of the best, what has the most evidence comes first.

@@ -30,7 +30,7 @@ LIKELY = 9
 """Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
 
 BEGUN, STARTS_BEGUN = 18, 3
-"""Hypotheses, and starts of each, that make these first steps: those of which derivatives foretell most."""
+"""Hypotheses, and starts of each, that make these first steps: those for which derivatives predict the largest gain."""
 
 HOPELESS = 10.0
 """Where much is left, what leaves so many times what the best leaves is not refitted further: of values of runs, beside
@@ -55,11 +55,11 @@ MOST_STEPS, ALL_STEPS = 10, 30
 """Further steps of a refit where much is left, and of the best few."""
 
 LONG_WAYS = 3
-"""How often what would fit best, were it gone on with, is: along a narrow valley steps are short."""
+"""Times the refit with the best predicted end is continued: along a narrow valley steps are short."""
 
 UNLIKE_SIDES = 5.0
-"""What a term that only a hull of two unlike sides has must explain besides: on turns to one side it is like the term
-that both sides have."""
+"""Gain that a term of a hull with unlike sides must bring in addition: on turns to one side it acts like the symmetric
+term."""
 
 FIRST = 4
 """First steps of an effect with one side only, from each start: in the first of them the targets only follow."""
@@ -78,17 +78,17 @@ FEW = 4
 
 
 class Stopped(Exception):
-    """A look that was not finished, of which nothing can be told."""
+    """Raised where a look was stopped before its end; it has no result."""
 
 
 @dataclass(eq=False)
 class Known:
-    """Refits there are within a look, by the names of the hypothesis.
+    """Cache of the refits of a look, by the names of the hypothesis.
 
     ends   finished ones
-    good   whether their noise is the one in use; else they are places to go on from
+    good   whether they were made with the noise in use; else they only serve as starts
     begun  first steps from each start
-    least  chi-squared of the best of one value for all runs, finished or not, in that noise
+    least  chi-squared of the best refit with one value for all runs, finished or not, in the noise in use
     """
 
     ends: dict[tuple[str, ...], Point] = field(default_factory=dict)
@@ -97,11 +97,11 @@ class Known:
     least: float = math.inf
 
     def outdate(self) -> None:
-        """Noise is known to be other."""
+        """Mark refits as made with outdated noise."""
         self.good, self.least = False, math.inf
 
     def note(self, hypothesis: Hypothesis, ends: list[Point]) -> list[Point]:
-        """Ends of refits of a hypothesis, which may be the best of all."""
+        """The ends of refits of a hypothesis, noted in ``least`` where one of them is the best of all."""
         if not hypothesis.by:
             self.least = min([self.least, *(end.chi2 for end in ends)])
         return ends
@@ -109,10 +109,11 @@ class Known:
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """Where a look begins with what has leeway at the profile's values: there it has taken nothing of any cause.
+    """Starting state of a look with leeway parameters fixed at the profile's values, where they have absorbed nothing
+    of any cause.
 
-    point  what is known so far, fitted so
-    linear what the signatures of hypotheses are there
+    point  the causes accepted so far, fitted that way
+    linear the problem made linear at that point, with the signatures of hypotheses
     steps  of hypotheses by name, in typical sizes, as their scores there promise; the best scores first
     """
 
@@ -126,11 +127,11 @@ class Refitting:
     """What a look refits hypotheses from.
 
     bench   the trials, and the model with every effect
-    point   what is known so far
-    linear  what the signatures of hypotheses are there
+    point   the point with the causes accepted so far
+    linear  the problem made linear at that point, with the signatures of hypotheses
     known   refits there are within the look
-    given   what is known so far without leeway, None where nothing has any or little is left without it either
-    every   whether every hypothesis makes first steps: where nothing is re-tuned derivatives foretell little
+    given   the same without leeway; None where nothing has leeway or little error is left without it either
+    every   whether every hypothesis makes first steps: where nothing is re-tuned derivatives predict little
     enough  chi-squared from which on no refit is of use
     """
 
@@ -149,18 +150,19 @@ class Refitting:
 
     @property
     def _hopeless(self) -> float:
-        """Chi-squared from which on refits are given up here."""
+        """Chi-squared above which refits are given up in this look."""
         return min(self.enough, hopeless_beside(self.bench, self.known.least))
 
     @property
     def _before(self) -> Point:
-        """Where named hypotheses are first looked for from: with nothing yet taken by what has leeway."""
+        """The point from which named hypotheses make their first steps: one where parameters with leeway have absorbed
+        nothing."""
         return self.given.point if self.given else self.point
 
     def best(self, ranked: Sequence[Score], *, quick: bool) -> list[Refit]:
-        """The most promising hypotheses refitted, best first; what is found is known from then on.
+        """Refits of the most promising hypotheses, best first; they are kept in ``known``.
 
-        Raises Stopped where it is not to go on.
+        Raises Stopped where the caller stopped it.
         """
         order = sorted(ranked, key=lambda score: -score.score)
         named = [s for s in order if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
@@ -183,7 +185,7 @@ class Refitting:
         return self._ordered([self._judged(score, end, chance, max(1, len(terms))) for score, end in fitted])
 
     def _renew(self, ranked: Sequence[Score]) -> None:
-        """Refits there are, in the noise as it is known now: what others are hopeless beside."""
+        """Redo the cached refits with the present noise: hopeless ones are judged by them."""
         if not self.known.good:
             for score in ranked:
                 if score.hypothesis.names in self.known.ends:
@@ -196,8 +198,8 @@ class Refitting:
             raise Stopped
 
     def _likely(self, named: Sequence[Score]) -> list[Score]:
-        """Of named hypotheses, best scores first, those whose first steps from any start explain most, and a few of
-        the best scores; without leeway where that is told."""
+        """The named hypotheses (best scores first) whose first steps from any start explain most, and a few with the
+        best scores; by fits without leeway where there is ``given``."""
         point = self._before
         if self.given:
             place = {names: k for k, names in enumerate(self.given.steps)}
@@ -216,24 +218,24 @@ class Refitting:
         return [score for k, score in enumerate(named) if k in kept]
 
     def _well_formed(self, named: Sequence[Score], chosen: Sequence[Score]) -> list[Score]:
-        """Named hypotheses, best scores first, that do as well as the best by the form of their effect, but for those
-        chosen anyhow."""
+        """Named hypotheses, best scores first, that would do as well as the best if the form of their effect may
+        change, less those that were chosen already."""
         there = {score.hypothesis.names for score in chosen}
         enough = max([ENOUGH, *(score.score for score in named[REFITTED - 1 : REFITTED])])
         others = [s for s in named if s.power > 0.0 and s.hypothesis.effect.form and s.hypothesis.names not in there]
         return [score for score in others if self._by_form(score) > enough]
 
     def _may_tell(self, score: Score) -> bool:
-        """Whether a refit may find what earns its price where little is left: the score does, or says little, as of
-        effects with one side only, whose slope at the null misleads, and of those with a form."""
+        """Whether a refit may gain more than its price where little error is left: by its score, or because the score
+        says little, as for one-sided effects, whose slope at the null misleads, and for effects with a form."""
         hypothesis = score.hypothesis
         earned = score.score / score.inflation - self._new(hypothesis) * self.bench.price
         sided = bool(inwards(self.bench.null(hypothesis.names)).any())
         return earned > 0.0 or sided or bool(hypothesis.effect.form)
 
     def _by_form(self, score: Score) -> float:
-        """Fall of chi-squared that a hypothesis promises together with the form of its effect, about a small size: what
-        its score says is that of the formula."""
+        """Fall of chi-squared that a hypothesis promises when the form of its effect may change too, about a small
+        size; the score takes the formula as exact."""
         bench, point, own = self.bench, self.point, score.hypothesis.names
         forms = [name for name in bench.believed.form_of(score.hypothesis.effect) if name not in point.names]
         null = bench.null(own)
@@ -259,15 +261,15 @@ class Refitting:
         return float(along @ np.linalg.lstsq(normal, along, rcond=1e-12)[0])
 
     def _foretelling(self, point: Point, named: Iterable[Score]) -> Foretelling:
-        """What steps with hypotheses from a point taken there, without them, promise."""
+        """Predictor of what steps of hypotheses gain, with derivatives taken at a point without them."""
         linear = self.given.linear if self.given else self.linear
         return Foretelling(self.bench, point, linear, [score.hypothesis for score in named])
 
     def _first_by_step(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
     ) -> dict[int, FloatArray]:
-        """Where the best step from those starts leads, by number of the hypothesis: of the hypotheses that it helps
-        most, and of the best scores anyhow."""
+        """Where the best step from the starts leads, by number of the hypothesis: for the hypotheses that gain most,
+        and for the best scores anyhow."""
         foretelling = self._foretelling(point, (named[k] for k in starts))
         led, left = {}, {}
         for k, those in starts.items():
@@ -281,7 +283,7 @@ class Refitting:
     def _promising(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
     ) -> dict[int, FloatArray]:
-        """Those of the starts, by number of the hypothesis, of which most is foretold; of the best scores anyhow."""
+        """The starts with the largest predicted gain, by number of the hypothesis; those of the best scores anyhow."""
         foretelling = self._foretelling(point, (named[k] for k in starts))
         least = {}
         for k, those in starts.items():
@@ -295,7 +297,7 @@ class Refitting:
         }
 
     def _fitted(self, chosen: Sequence[Score]) -> list[tuple[Score, Point]]:
-        """Hypotheses refitted, those that promise much to the end."""
+        """Refits of hypotheses; those that promise much are carried to the end."""
         rough = self._all_rough(chosen)
         n = self.bench.problem.n_residuals
         gains = sorted((self.point.chi2 - end.foreseen for end in rough), reverse=True)
@@ -336,9 +338,10 @@ class Refitting:
         return [found[k] for k in range(len(chosen))]
 
     def _of_runs_worth(self, order: Sequence[Score], fitted: Sequence[Point], *, quick: bool) -> list[Score]:
-        """Hypotheses of values that differ between runs that are worth a refit beside those of one value for all.
+        """Hypotheses with run-specific values that are worth a refit beside those with one value for all.
 
-        Where one value for all leaves little more than noise, that it differs is seen once it is in place.
+        Where one value for all leaves little more than noise, it is added first; a later look shows whether it differs
+        between runs.
         """
         differing = [s for s in order if s.hypothesis.by and s.spread > 0.0]
         n = self.bench.problem.n_residuals
@@ -367,7 +370,7 @@ class Refitting:
         return [alike, *(refit for refit in found if refit is not alike)]
 
     def _rough(self, score: Score) -> Point:
-        """A few steps towards the best fit with a hypothesis, on from what is known of it."""
+        """A few steps towards the best fit with a hypothesis, continued from its cached refits."""
         names = score.hypothesis.names
         if names in self.known.ends:
             end = self.known.ends[names]
@@ -403,7 +406,7 @@ class Refitting:
         return self._steps(there, score, start[:, None], ROUGH)
 
     def _released(self, score: Score, end: Point) -> list[Point]:
-        """A few steps with leeway, on from a refit without any, and from where the score says."""
+        """A few steps with leeway, continued from a refit without, and from the step that the score promises."""
         names = [self.point.names[i] for i in kept_free(self.point, score.hypothesis)]
         there = dict(zip(end.names, end.unit, strict=True))
         own = [there.get(name, z) for name, z in zip(names, self.bench.null(names), strict=True)]
@@ -418,8 +421,8 @@ class Refitting:
         """Where the refit of a hypothesis starts from a point, (n_names, n_starts): where its score says, and for an
         effect with one side only, whose slope at the null misleads, at sizes around the typical.
 
-        Where it takes the place of a target that ended at a bound, the others followed that one astray: it starts from
-        the profile's values of them, too.
+        Where it replaces a target that ended at a bound, the other targets were drawn astray by that one: it also
+        starts from the profile's values of the targets.
         """
         names = score.hypothesis.names
         null = origin(self.bench, point, names)
@@ -436,7 +439,7 @@ class Refitting:
         return np.column_stack([np.concatenate([z, np.clip(place, 0.0, 1.0)]) for z in others for place in places])
 
     def _steps(self, point: Point, score: Score, starts: FloatArray, iterations: int) -> list[Point]:
-        """So many steps of fits with a hypothesis, from starts at a point, offsets beginning there."""
+        """A number of steps of fits with a hypothesis, from starts at a point and its offsets."""
         hypothesis = score.hypothesis
         excess = max(point.chi2 - self.bench.problem.n_residuals, 0.0)
         return self.known.note(
@@ -453,7 +456,7 @@ class Refitting:
         )
 
     def _on(self, score: Score, end: Point, steps: int) -> Point:
-        """A refit gone on with, for so many steps."""
+        """A refit continued for a number of steps."""
         spread = 0.0
         if score.hypothesis.by:
             spread = max(told_by(self.linear, score.hypothesis, self._moved(score.hypothesis, end))[0], LEAST_SPREAD)
@@ -472,7 +475,7 @@ class Refitting:
         return end
 
     def _judged(self, score: Score, end: Point, chance: ChanceScores | None, n_terms: int) -> Refit:
-        """A refit with what chance would bring; n_terms  of those there are to choose from."""
+        """A refit with its gain, cost, evidence and p-value; ``n_terms`` is how many terms there are to choose from."""
         bench, point, hypothesis = self.bench, self.point, score.hypothesis
         null = bench.null(hypothesis.names)
         # A wind of nearly nothing is not quite nothing, and numbers may run away: the null itself is always open.
@@ -532,15 +535,15 @@ def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
 
 
 def hopeless_beside(bench: Workbench, chi2: float) -> float:
-    """Chi-squared from which on a refit is given up beside one that leaves hardly more than noise; inf where that one
+    """Chi-squared above which refits are given up where the best refit leaves hardly more than noise; inf where it
     leaves more."""
     n = bench.problem.n_residuals
     return math.inf if chi2 > STRONG * n else n + HOPELESS * max(chi2 - n, HARDLY_MORE * n)
 
 
 def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[Score]:
-    """Those that act much like the one that fits best, whose scores may mislead: that of a wind is that of a light one,
-    hardly its force; and the special cases of one whose values differ between groups of runs."""
+    """Hypotheses that act much like the best fit and whose scores may mislead (the score of a wind is that of a light
+    one); and, where the best has values by group of runs, its special cases."""
     if not fitted:
         return []
     best = min(fitted, key=lambda one: one[1].chi2)[0].hypothesis

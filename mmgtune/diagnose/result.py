@@ -128,7 +128,7 @@ class Diagnosis(Answer):
         return with_effects(retuned, values, f"diagnosed by {made_by}", stderr)
 
     def extended_text(self) -> str:
-        """TOML of that."""
+        """TOML of the extended profile."""
         return self.extended_profile().text
 
     def to_dict(self) -> dict[str, Any]:

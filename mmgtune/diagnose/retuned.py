@@ -71,7 +71,7 @@ class Retuned:
 
     @property
     def deviation(self) -> float | None:
-        """Standard error of that."""
+        """Standard error of ``change``."""
         return None if self.stderr is None or not self.before else self.stderr / abs(self.before)
 
     @property
@@ -109,8 +109,8 @@ class Retuned:
 
 
 def retuned(bench: Workbench, point: Point) -> list[Retuned]:
-    """Targets of the ship herself at a point, what is surest far from its pre-determined value first, and what the
-    trials contradict of her mass and inertia."""
+    """Targets of the ship herself at a point, those most surely far from their pre-determined values first, and values
+    of mass and inertia that the trials contradict."""
     loose = [name for name in point.names if name in bench.believed.leeway and name.startswith(WEIGHED)]
     names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")] + loose
     if not names:
@@ -141,7 +141,7 @@ def weighed(moved: Sequence[Retuned]) -> str:
 
 
 def in_words(moved: Sequence[Retuned]) -> str:
-    """Those of service that are far away, the surest first: "A ... and B ..."; "" for none."""
+    """Targets that change in service and are far off, the surest first: "A ... and B ..."; "" for none."""
     if _astray(moved):
         return ""
     told = [one.words for one in _targets(moved) if one.far and one.name in IN_SERVICE]
@@ -159,7 +159,7 @@ def _targets(moved: Sequence[Retuned]) -> list[Retuned]:
 
 
 def _astray(moved: Sequence[Retuned]) -> bool:
-    """Whether what drives the ship moved so far that resistance may only have followed."""
+    """Whether thrust, or the flow to the propeller, moved so far that resistance may only have followed."""
     return any(_off_drive(one) for one in moved)
 
 
@@ -174,7 +174,7 @@ def _off_drive(one: Retuned) -> bool:
 
 
 def besides(moved: Sequence[Retuned]) -> str:
-    """Why the others are not told of, where some moved as far: in a sentence; "" for none."""
+    """Why the other targets are not reported, where some moved as far: in a sentence; "" for none."""
     if told := _together(moved):
         return told
     others = [one for one in _targets(moved) if one.name not in IN_SERVICE]
@@ -200,7 +200,7 @@ def _together(moved: Sequence[Retuned]) -> str:
 
 
 def far_off(moved: Sequence[Retuned]) -> str:
-    """What else a reader should know of targets that are far off where nothing is wrong: in a sentence; "" for none."""
+    """Note on targets that are far off where nothing is wrong: in a sentence; "" for none."""
     if told := _together(moved):
         return told
     far = [one for one in _targets(moved) if one.far]
@@ -228,5 +228,5 @@ def _changes(moved: Sequence[Retuned]) -> str:
 
 
 def _distance(one: Retuned) -> float:
-    """From its pre-determined value, in standard errors; what is not known last."""
+    """Sort key: distance from the pre-determined value in standard errors; unknown ones last."""
     return abs(one.after - one.before) / one.stderr if one.stderr else -1.0

@@ -24,7 +24,7 @@ IN_WORDS = {"trial": "run", "file": "log", "group": "group"}
 
 
 def groups_of(trial: Trial) -> dict[str, str]:
-    """What a trial belongs to, by grouping; windows of a trial belong to it."""
+    """Group of a trial, by grouping; windows of a trial belong to its groups."""
     return {"trial": trial.whole, "file": trial.run, "group": trial.group or trial.run}
 
 

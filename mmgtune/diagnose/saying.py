@@ -99,7 +99,7 @@ def _of_causes(answer: Answer) -> str:
 
 
 def _of_none(answer: Answer) -> str:
-    """That no cause shows, and what re-tuning took or the log of the inputs leaves open."""
+    """That no cause shows, what re-tuning changed, and what the log of the inputs leaves open."""
     if answer.leaves_open:
         return (
             f"No cause shows. The re-tuned model leaves {_of_noise(answer.leftover.left_open)} of the sensors, "
@@ -176,7 +176,7 @@ def _of_the_unknown(answer: Answer) -> Said:
 
 
 def _of_the_named(answer: Answer) -> str:
-    """The causes, those last of which the trials cannot tell which it is."""
+    """The causes; last, the groups of causes that the trials cannot tell apart."""
     unsure = {tag for group in answer.groups for tag in group}
     sure, doubtful = (
         " ".join(f"{cause.sentence}." for cause in answer.causes if (cause.tag in unsure) == asked)
@@ -216,5 +216,5 @@ def _gained(answer: Answer, them: str, where: str) -> str:
 
 
 def _of_noise(variance: float) -> str:
-    """A variance beside that of the noise."""
+    """A variance compared with that of the noise, in words."""
     return f"an error with {100.0 * variance:.0f} % of the variance of the noise"

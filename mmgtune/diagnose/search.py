@@ -31,8 +31,8 @@ ALMOST = 0.9
 """Share of the best gain from which a finer integration step, which has no parameter, is believed before any effect."""
 
 HALF = 0.5
-"""The same of a log that looks held and is read accordingly: it is seen in the log, and a clock that is late explains
-most of it too."""
+"""Share of the best gain from which a log that looks held is read accordingly: it is seen in the log, and a late clock
+explains most of it too."""
 
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
@@ -45,14 +45,14 @@ FINER = 4
 class Step:
     """One look at what is left.
 
-    base     what was known before
+    base     the point with the causes accepted before
     refits   best first
     scores   of every hypothesis
     rivals   of the best: hypotheses of other effects that do nearly as well
     accepted whether the best is believed
     reason   why not, where it is not
     finer    fall of chi-squared by a finer integration step, None where not tried
-    evenly   the same by inputs that change evenly between the updates of a log that looks held
+    evenly   fall of chi-squared by inputs that change evenly between the updates of a log that looks held
     """
 
     base: Point
@@ -77,7 +77,7 @@ class Found:
     """The outcome of a search.
 
     base    the model re-tuned without any cause
-    final   with all that were accepted
+    final   the model with all accepted causes
     causes  accepted hypotheses, in the order found, after those that others made superfluous were dropped
     steps   every look, the last one in vain
     held    what the logs hold between updates, where that is a cause; the base is read accordingly too
@@ -173,7 +173,7 @@ def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
 
 
 def _left(hypotheses: Sequence[Hypothesis], found: Found, dropped: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """What may be looked at beside what was found."""
+    """Hypotheses that may still be looked at beside the causes found."""
     return [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
 
 
@@ -185,8 +185,8 @@ def finer(integrator: Integrator) -> Integrator:
 def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool) -> Step:
     """Scores of all hypotheses at a point, refits of the best, and whether the best of those is to be believed.
 
-    Noise is estimated anew from what the best refit and all other signatures together leave: any less, and a cause
-    would pass for noise with a memory.
+    Noise is estimated again from what the best refit and all other signatures together leave: with fewer of them a
+    cause would pass for noise with a memory.
     """
     names = [name for h in hypotheses for name in h.bases]
     varying = [name for h in hypotheses if h.by for name in h.bases]

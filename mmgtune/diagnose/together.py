@@ -13,11 +13,11 @@ from .gain import Gain
 
 @dataclass(frozen=True)
 class Together:
-    """What the other trials alone were answered, and what that left of those kept for testing.
+    """The answer without the trials kept for testing, and the error it left on these.
 
     effects  tags of the causes, with ``believed`` whether they were
     left     error that was left there, over the noise of the sensors
-    settled  whether the answer given is that of all trials together, not that of the others
+    settled  whether the answer given is that of all trials together, not that without the trials kept for testing
     """
 
     effects: tuple[str, ...]

@@ -20,12 +20,12 @@ from .workbench import Point, Workbench, make_workbench
 
 @dataclass(frozen=True, eq=False)
 class Unseen:
-    """The trials that fitted points are judged by, which nothing was fitted to: those kept for testing, or each run in
-    turn, all refitted without it.
+    """The trials that fitted points are judged by: those kept for testing, or each run in turn with everything refitted
+    without it.
 
     bench    what the points were fitted on; what it knows of noise and inputs is settled
     test     trials kept for testing
-    without  the same without a run, by run; made when asked for
+    without  the workbench without a run, by run; made when asked for
     """
 
     bench: Workbench
@@ -50,8 +50,7 @@ class _Without:
     """The workbench of all runs but one.
 
     rest   that workbench; keep: its trials, by number in the whole one
-    known  points and what was refitted of them, by identity of the point: causes are set aside one by one, and what
-           stays is asked for again
+    known  points and their refits, by identity of the point: causes are set aside one by one, and points recur
     """
 
     rest: Workbench
@@ -100,14 +99,14 @@ class Beside:
 
     @classmethod
     def of(cls, bench: Workbench, points: Sequence[Point], trials: Sequence[Trial]) -> Beside:
-        """The last point says what something is estimated for."""
+        """Fitted points on the trials; the last point says which parameters are run-specific."""
         wide, units = _together(bench, [estimated_there(bench, point, trials) for point in points])
         scaled = problem_on(bench, wide, trials, bench.in_noise)
         return cls(bench, tuple(trials), first_part(points[-1], trials), wide, units, scaled)
 
     @property
     def judged(self) -> FitProblem:
-        """The same problem in which what something is estimated on does not count."""
+        """The problem with zero weight on the samples that run-specific parameters are estimated on."""
         weight = self.scaled.cases.weight.copy()
         for case, begin in enumerate(self.begins):
             weight[case, :begin] = 0.0

@@ -37,7 +37,7 @@ MOSTLY = 0.95
 something of a shape is left besides."""
 
 ALL, ALL_HELD_OUT = 0.998, 0.98
-"""The same from which it is all, and that on held-out trials."""
+"""Share of the error above noise from which it counts as all of it, and that share on held-out trials."""
 
 OPEN = 0.3
 """Variance beyond noise that is spoken of where the log of the inputs leaves it open, as a share of the noise."""
@@ -94,7 +94,7 @@ class Doubted:
 
     @classmethod
     def of(cls, answer: Answer) -> Doubted:
-        """The causes of a diagnosis that are unclear."""
+        """The causes of an answer that is unclear."""
         return cls(tuple(tag for tag, _ in answer.contributions), answer.unclear)
 
     @property
@@ -111,7 +111,7 @@ class Doubted:
 class Leading:
     """The first of causes that are not believed together, where it alone removes most of the error.
 
-    explained  share of the error that it was found on; held_out: of that where nothing was fitted
+    explained  share removed of the error on the trials it was found on; held_out: of the error on held-out trials
     """
 
     cause: Cause
@@ -120,8 +120,8 @@ class Leading:
 
     @classmethod
     def of(cls, whole: Answer, first: Answer) -> Leading | None:
-        """Of the answer that has all, which says how large it is, and that with the first alone, which says how much it
-        does; None where that is little, or its size is not told."""
+        """From the answer with all causes, which has the size of the first, and the answer with the first alone, which
+        has its gain; None where the gain is small or the size is not determined."""
         explained, held_out = first.explained_share, first.gain.share_removed[0]
         if not first.causes or min(explained, held_out) < LEADS:
             return None

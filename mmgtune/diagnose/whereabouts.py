@@ -37,7 +37,7 @@ _DURING = {
     "checking": "while the rudder checks the turn",
     "steady": "later than three ship lengths after an order",
 }
-"""The same inside a sentence."""
+"""Phases as they stand inside a sentence."""
 
 ENTRY = 3.0
 """Ship lengths run since an order that count as entry."""
@@ -118,7 +118,7 @@ class Whereabouts:
     runs     share of the error beyond noise by run, worst first, of the motion
     phases   by phase and axis: mean square of the residual force beyond its noise, over that of the noise
     samples  by phase, the share of the time
-    axes     by axis, the same over all
+    axes     by axis, mean square of the residual force beyond its noise over all phases, over that of the noise
     follows  by axis and quantity, share of its variance that the quantity alone predicts on stretches left out
     curves   by axis, the quantity it follows most: bins of it with mean force, its scatter and the noise
     histories  of the worst runs: time, phase and residual forces

@@ -49,7 +49,7 @@ def other_winds(
     theta  (n_rows, 1) coefficients, or (n_rows, n_cases, 1)
 
     -> (n_cases, 1 + n_draws, T, n_surroundings), and coefficients (n_rows, n_cases, 1 + n_draws) that make a model
-    simulate those; both the same in every draw where no wind acts on the ship
+    simulate these winds; all draws are alike where no wind acts on the ship
     """
     copies = 1 + n_draws
     around = np.repeat(cases.around[:, None], copies, axis=1)

@@ -44,8 +44,8 @@ class Point:
     offsets  (n_cases, 6) of the initial states
     chi2     sum of squared whitened residuals, of offsets over their deviations, and of what differs between runs over
              its spread
-    spreads  of that, by ``runs.spread_key``, in the unit cube
-    promised how much further it would fall, by the linear problem of the last step
+    spreads  of run-specific values, by ``runs.spread_key``, in the unit cube
+    promised predicted further fall of chi-squared, by the linear problem of the last step
     """
 
     names: tuple[str, ...]
@@ -58,12 +58,12 @@ class Point:
 
     @property
     def foreseen(self) -> float:
-        """Chi-squared that a fit gone on with from here would end at, as far as that can be seen."""
+        """Chi-squared predicted for the end of the fit if it were continued from here."""
         return self.chi2 - self.promised
 
 
 class _How(TypedDict, total=False):
-    """What a refit may be told; see ``Workbench.refits``."""
+    """Keyword arguments of a refit; see ``Workbench.refits``."""
 
     integrator: Integrator | None
     max_iterations: int
@@ -155,7 +155,7 @@ class Workbench:
 
     @property
     def in_noise(self) -> Objective:
-        """Squares of what counts, in white noise of the sensors."""
+        """Objective that divides squares by the white noise of the sensors."""
         return _in_noise(self.sigma, self.channels)
 
     def sub_box(self, names: Sequence[str]) -> Box:
@@ -274,7 +274,7 @@ class Workbench:
         return replace(profile, sections=sections)
 
     def values(self, point: Point) -> dict[str, float]:
-        """What was free, by name, in profile units."""
+        """Values of the free parameters, by name, in profile units."""
         return dict(zip(point.names, self.sub_box(point.names).from_unit(point.unit).tolist(), strict=True))
 
 

@@ -1,4 +1,4 @@
-"""Convex quadratics made small within the unit cube."""
+"""Minimisation of convex quadratics within the unit cube."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 
 MOST_CHANGES = 12
-"""Rounds in which small problems choose anew what is held at a bound, before they are solved one by one."""
+"""Rounds in which small problems choose again what is held at a bound, before they are solved one by one."""
 
 
 def bounded_step(

@@ -86,7 +86,7 @@ class Box(Brief):
         place = {name: k for k, name in enumerate(names)}
 
         def beside(k: int, j: int) -> int | None:
-            """The place of coefficient j of the group that target k is of."""
+            """Index of coefficient j of the same group of cases as target k."""
             group = group_of(names[k])
             return place.get(f"{self.names[j]}{AT}{group}" if group else self.names[j])
 
@@ -113,7 +113,8 @@ class Box(Brief):
 
     @property
     def relative(self) -> FloatArray:
-        """What a share of each target is of: its pre-determined value, its width where that is 0 or infinite."""
+        """Reference value of relative changes of each target: its pre-determined value, or its width where that is 0 or
+        infinite."""
         return np.abs(np.where((self.pre != 0.0) & np.isfinite(self.pre), self.pre, self.width))
 
     def bound_at(self, i: int, z: float) -> str | None:

@@ -91,7 +91,7 @@ def nothing_to_resume(
 
 
 def _changes(key: str, before: Any, now: Any) -> list[str]:
-    """What differs of one part of an identity, in words; of options which, with both values."""
+    """Differences in one part of an identity, in words; for options with both values."""
     if before == now:
         return []
     if key != "options" or not isinstance(before, dict) or not isinstance(now, dict):

@@ -83,7 +83,7 @@ class Search:
 
 
 def _asked(problem: FitProblem, seed: int, start: FloatArray, **named: Any) -> list[Any]:
-    """What tells one search from another."""
+    """Numbers and texts that identify a search in a journal."""
     return ["search", *problem.asked(), seed, start, named.get("tolerance"), named.get("populations")]
 
 

@@ -1,4 +1,4 @@
-"""What a fit is asked for, settled for the ship it is asked of: effects put in to be tuned, the width of the box."""
+"""Options of a fit completed for a ship: effects put in to be tuned, the width of the box."""
 
 from __future__ import annotations
 

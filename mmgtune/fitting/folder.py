@@ -46,7 +46,7 @@ def write_run(result: FitResult, folder: Path | str, *, overwrite: bool = False)
 
 
 def write_document(document: dict[str, Any], folder: Path) -> None:
-    """Write the document of a fit, anew where something is added to it."""
+    """Write the document of a fit, again where something is added to it."""
     write_json(document, folder / RESULT)
 
 

@@ -43,7 +43,7 @@ class Information:
     known: FloatArray
 
     def apart_from(self, names: Sequence[str]) -> Self:
-        """What they say of the others while these are open."""
+        """What the trials say about the other coefficients while these are unknown."""
         out = [k for k, name in enumerate(self.names) if name in names]
         kept = [k for k, name in enumerate(self.names) if name not in names]
         if not out:
@@ -61,7 +61,7 @@ class Information:
         )
 
     def and_of(self, other: Information) -> Self:
-        """What both say of the same ship, by trials independent of each other."""
+        """Sum of two pieces of information on the same ship, from independent trials."""
         names = tuple(dict.fromkeys((*self.names, *other.names)))
         H, b = np.zeros((len(names), len(names))), np.zeros(len(names))
         before, known = np.zeros(len(names)), np.zeros(len(names))
@@ -79,7 +79,7 @@ class Information:
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Self:
-        """Of a document.  Raises KeyError or ValueError where it is none."""
+        """From a document.  Raises KeyError or ValueError where it is none."""
         if not isinstance(document, Mapping):
             raise ValueError("it is no table")
         names = document["names"]

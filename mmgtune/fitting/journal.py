@@ -51,7 +51,7 @@ class Journal:
         self._file: Any = None
 
     def begin(self, resume: bool) -> None:
-        """Read what is there, or begin anew.
+        """Read the journal that is there, or begin a new one.
 
         Raises OptionError where there is nothing to resume, or it belongs to another run.
         """

@@ -22,7 +22,7 @@ from .problem import FitProblem
 from .quadratic import Quadratic, flat_where_lost
 
 QUIET = 1e-9
-"""Relative fall of what is minimised that counts as none; two such iterations in a row end a start."""
+"""Relative fall of the objective that counts as none; two such iterations in a row end a start."""
 
 DAMPINGS = 10.0 ** np.array([-2.0, -0.7, 0.3, 2.0])
 """Multiples of the last damping tried side by side, as lanes of one call."""
@@ -37,7 +37,8 @@ FORETOLD = 0.3
 """Share of a promised fall by which it may differ for the derivatives to be used once more."""
 
 SETTLED = 4
-"""Iterations from which on that is done: before, parameters that move later than others still find their way."""
+"""Iterations before derivatives may be reused: at first, parameters that move later than others still find their
+way."""
 
 FIRST_STEPS = 1
 """Steps before a start is given up for what the linear problem promises: far from its end that says little."""
@@ -55,10 +56,10 @@ class LeastSquaresResult(Brief):
 
     unit        (n_targets,) position in the unit cube
     offsets     (n_cases, 6) of the initial states; zero where these are held
-    J           what ``FitProblem.costs`` gives there: J and the terms beside it, without the prior of the offsets
+    J           objective by ``FitProblem.costs``: J and the weighted terms, without the prior of the offsets
     converged   whether it stopped by itself
-    promised    what is minimised would fall by so much further, by the linear problem of the last step; 0 where that
-                was not asked
+    promised    predicted further fall of the objective, by the linear problem of the last step; 0 where that was not
+                asked
     """
 
     unit: FloatArray
@@ -70,7 +71,7 @@ class LeastSquaresResult(Brief):
 
 
 def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -> list[Any]:
-    """What tells one solve from another."""
+    """Numbers and texts that identify a solve in a journal."""
     named = {name: "a function" if callable(value) else value for name, value in named.items()}
     anchor = named.pop("anchor", None)
     beliefs = named.pop("beliefs", None)
@@ -109,23 +110,23 @@ def solve(
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
     Where the problem estimates initial states, their offsets are eliminated from each step exactly: a case's six
-    touch its own residuals only.  What is minimised then is J plus the prior of the offsets.
+    touch its own residuals only.  The objective is then J plus the prior of the offsets.
 
-    ridge, anchor   adds ridge * |unit - anchor|^2 to what is minimised (not to the J reported): picks, among
+    ridge, anchor   adds ridge * |unit - anchor|^2 to the objective (not to the J reported): picks, among
                     coefficient sets that fit equally well, the one nearest to ``anchor``
     stop            asked before every iteration; True ends all starts where they are
     whiten          linear map of residuals (n_residuals, ...) within each case, such as ``Whitening.apply``; J is then
-                    the sum of squares of what it makes of them
-    tolerance       fall of what is minimised that counts as none, if larger than a share of QUIET
-    beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to what is minimised
-                    (not to the J reported)
+                    the sum of squares of the whitened residuals
+    tolerance       fall of the objective that counts as none, if larger than a share of QUIET
+    beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to the objective (not to
+                    the J reported)
     trusting        a start also ends after the step from which the linear problem promises no more than the tolerance,
                     or that brought what was promised to within it, instead of two steps in a row that bring no more,
                     and two again; and initial states that would leave their range are held at its end in the linear
                     problem, and held back by large damping (elsewhere they find the way round a bound by steps of
                     their own)
     hopeless        a trusting start also ends, after its first steps, where all that the linear problem promises would
-                    leave more of what is minimised than this
+                    leave a larger objective than this
     Returns a result per start, never above what it began with.
     """
     aim = _Minimised(problem, len(starts), ridge, anchor, beliefs, whiten)
@@ -177,7 +178,8 @@ def squares_by_case(
 
 
 class _Minimised:
-    """What is minimised: J or the sum of squares of whitened residuals, and what is added to it; see ``solve``."""
+    """The objective: J or the sum of squares of whitened residuals, plus ridge, beliefs and prior of the offsets; see
+    ``solve``."""
 
     def __init__(
         self,
@@ -200,11 +202,11 @@ class _Minimised:
         return found if self._whiten is None else self._whiten(found)
 
     def cost(self, unit: FloatArray, offsets: FloatArray) -> FloatArray:
-        """(n_points,) J, or what stands for it."""
+        """(n_points,) J, or the sum of squares of whitened residuals."""
         return self.problem.costs(unit, offsets) if self._whiten is None else _squares(self.residuals(unit, offsets))
 
     def penalty(self, unit: FloatArray, offsets: FloatArray) -> FloatArray:
-        """(n_points,) what is added to it."""
+        """(n_points,) ridge, beliefs and prior of the offsets."""
         away = np.sum((unit - self._centre[:, None]) ** 2, axis=0)
         own = self._ridge * away + np.einsum("cps,cs->p", offsets**2, self.problem.prior)
         if self._beliefs is not None:
@@ -232,7 +234,7 @@ class _Minimised:
         return hessian, model.gradient + self._ridge * (at - self._centre) + self._believed @ (at - self._likely)
 
     def scale(self, model: Quadratic, at: FloatArray) -> FloatArray:
-        """(n_targets,) what damping is a multiple of."""
+        """(n_targets,) scale of the damping."""
         curvature = np.diag(self.derivatives(model, at)[0])
         return np.asarray(np.maximum(curvature, 1e-12 * curvature.max() + 1e-300))
 
@@ -249,7 +251,7 @@ class _Minimised:
         return step, there
 
     def promised(self, model: Quadratic, at: FloatArray, scale: FloatArray) -> float:
-        """Fall of what is minimised by a step that is hardly damped."""
+        """Predicted fall of the objective by a step that is hardly damped."""
         step, there = self.towards(model, at, HARDLY * scale)
         hessian, gradient = self.derivatives(there, at)
         step = step - at
@@ -268,7 +270,7 @@ class _Tried(NamedTuple):
 
 
 class _Starts:
-    """Where the starts stand; all that run go on side by side."""
+    """State of all starts; those still running are advanced side by side."""
 
     def __init__(self, aim: _Minimised, starts: FloatArray, tolerance: float, trusting: bool, hopeless: float):
         n = starts.shape[1]
@@ -328,7 +330,7 @@ class _Starts:
         return True
 
     def _around(self, rows: IntArray) -> list[Quadratic]:
-        """The quadratic models: of derivatives taken here, or of the last ones where those foretold what came."""
+        """The quadratic models: of derivatives taken here, or of the last ones where these predicted the step well."""
         anew = rows[~self._told[rows]]
         if len(anew):
             made = self._aim.models(self._z[:, anew], self._d[:, anew], self._trusting)
@@ -361,7 +363,7 @@ class _Starts:
         return _Tried(unit, offsets)
 
     def _taken(self, i: int, row: int, tried: _Tried, costs: FloatArray, values: FloatArray) -> float:
-        """Go to the best of the points tried if it is better, and choose the next damping; what that gained."""
+        """Go to the best of the points tried if it is better, and choose the next damping; the gain."""
         self._iterations[row] += 1
         best = int(np.argmin(values))
         gain = float(self._value[row] - values[best])

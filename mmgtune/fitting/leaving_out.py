@@ -105,7 +105,7 @@ class BandsLeftOut:
 class LeftOut(Displayed):
     """Every tune trial scored by coefficients that were fitted without its run.
 
-    thetas   for each part of the runs, values by name in profile units
+    thetas   values by name in profile units, fitted without each part of the runs
     parts    ids of the runs of each part
     before, after  scores of all tune trials with the profile's values, and with those fitted without them
     repeated_before, repeated_after  their manoeuvres repeated likewise, where asked for
@@ -388,7 +388,7 @@ class _ToAllRuns:
         return {one.trial.id: one for one in evaluate(predictor, series)}
 
     def without(self, out: Sequence[str], others: Sequence[str], hooks: Hooks) -> _Part | None:
-        """Fit to the others and meet those left out; None where it was stopped before its end."""
+        """Fit to the other runs and score those left out; None where it was stopped before its end."""
         box, model, trials = self.problem.box, self.problem.model, self.trials
         series = [trials.trials[name] for name in out if name in trials.trials]
         indices = [trials.stated[name] for name in out if name in trials.stated]

@@ -1,4 +1,4 @@
-"""Where a problem is smallest in its box: least squares from several starts, outliers weighed down, CMA-ES if asked."""
+"""The optimum of a problem in its box: least squares from several starts, robust weights, CMA-ES if asked."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ EXACT = 1e-8
 """Squared tolerances of stated indices that count as none: they can be met to the last bit, which is worth nothing."""
 
 LOOSE = 1e-3
-"""The same where indices are stated, in squared tolerances: a few numbers are met exactly by many sets."""
+"""Ridge where indices are stated, in squared tolerances: a few numbers are met exactly by many sets."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +36,8 @@ class Optimum:
     problem  with the initial states and weights that were found
     unit     (n_targets,) in the unit cube; cost: there
     ends     of least squares, from each start
-    ridge    what distances from the pre-determined values weighed
-    cma_es   that search, None where it was not asked for
+    ridge    weight of squared distances from the pre-determined values
+    cma_es   result of CMA-ES, None where it was not asked for
     """
 
     problem: FitProblem
@@ -67,7 +67,7 @@ class Seeking:
     recorded: list[FloatArray] | None
 
     def optimum(self, more_starts: tuple[Mapping[str, float], ...]) -> Optimum:
-        """Seek it.  Raises ProfileError where the simulation runs away wherever the targets are."""
+        """Seek the optimum.  Raises ProfileError where the simulation runs away wherever the targets are."""
         hooks = self.hooks
         hooks.on_phase("least squares")
         ridge = edge_ridge(self.problem, self.options, self.before)

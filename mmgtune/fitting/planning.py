@@ -38,7 +38,7 @@ ROUGHLY = 2e-8
 
 @dataclass(frozen=True)
 class Plan:
-    """What would be done.
+    """The plan of a command.
 
     lines    in words
     seconds  about how long it takes, from and to

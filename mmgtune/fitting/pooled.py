@@ -61,7 +61,7 @@ class SisterClass:
 
     @property
     def sha256(self) -> str:
-        """Of what the trials of the members say."""
+        """SHA-256 of what the trials of the members say."""
         told = {ship: one.to_dict() for ship, one in self.members.items()}
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
@@ -77,7 +77,7 @@ class SisterClass:
         }
 
     def without(self, ship: str) -> SisterClass:
-        """The class but for a ship: what her sisters say."""
+        """The class without a ship: what her sisters say."""
         return replace(self, members={name: one for name, one in self.members.items() if name != ship})
 
 
@@ -236,7 +236,7 @@ def _member(told: tuple[str, Any]) -> tuple[str, Information]:
 
 
 def _text(file: Path) -> str:
-    """What stands in the file of a class, which is read more than once.  Raises OptionError."""
+    """Text of the file of a class, which is read more than once.  Raises OptionError."""
     try:
         hold_regular(file)
         return limits.text(file, limits.RECORD_BYTES, OptionError)

@@ -76,7 +76,7 @@ class FitProblem:
         return replace(self, offsets=offsets)
 
     def with_weight(self, weight: float) -> Self:
-        """The rows of the terms weighed otherwise."""
+        """The problem with another weight of the terms."""
         return replace(self, weight=weight)
 
     def with_cases(self, cases: Cases) -> Self:
@@ -84,15 +84,15 @@ class FitProblem:
         return replace(self, cases=cases)
 
     def with_integrator(self, integrator: Integrator) -> Self:
-        """Simulated by another method."""
+        """The problem simulated by another integrator."""
         return replace(self, integrator=integrator)
 
     def with_targets(self, model: Model, box: Box) -> Self:
-        """Other coefficients free, of a model of the same ship."""
+        """The problem with other free coefficients, of a model of the same ship."""
         return replace(self, model=model, box=box)
 
     def with_groups(self, groups: Sequence[frozenset[str]]) -> Self:
-        """Cases of these groups."""
+        """The problem with cases that belong to these groups."""
         return replace(self, groups=tuple(groups))
 
     def with_prior(self, sigma: FloatArray, prior: FloatArray) -> Self:
@@ -115,7 +115,7 @@ class FitProblem:
         return self.counter.evaluations
 
     def asked(self) -> list[Any]:
-        """What tells this problem from another, as numbers and texts."""
+        """Numbers and texts that identify this problem in a journal."""
         box = (self.box.names, self.box.low, self.box.high)
         method = (self.model.tags, self.backend.name, self.integrator)
         found: list[Any] = [*box, *method, self.model.base, self.cases.sha256, self.sigma, self.offsets, self.prior]
@@ -196,7 +196,7 @@ class FitProblem:
         return Prediction(result.states, result.diverged)
 
     def costs(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
-        """What is made small of candidates (n_targets, n_candidates) -> (n_candidates,): J, and the terms by weight.
+        """Objective value (J plus weighted terms) per candidate, (n_targets, n_candidates) -> (n_candidates,).
 
         offsets  (n_cases, n_candidates, 6) of the initial states, the problem's own where None
         inf where a run diverged.
@@ -320,11 +320,12 @@ class FitProblem:
             moved[:, :, k, k] += step * self.sigma[:, None, k] * 1e3
 
     def by_row(self, of_cases: PerCase) -> PerCase:
-        """What is of each case (n_cases, ...) for each of its residuals (n_residuals, ...)."""
+        """Values by case (n_cases, ...) repeated for each residual of the case (n_residuals, ...)."""
         return np.repeat(of_cases, [rows.stop - rows.start for rows in self.rows_of_cases], axis=0)
 
     def _moved_together(self) -> list[list[int]]:
-        """Targets by number that no case has two of: values of one coefficient for different groups."""
+        """Indices of targets that can be varied in the same lane, as no case has two of them: values of one coefficient
+        for different groups."""
         if not self.grouped:
             return [[k] for k in range(len(self.box))]
         found: dict[tuple[str, str], list[int]] = {}
@@ -333,7 +334,8 @@ class FitProblem:
         return list(found.values())
 
     def _apart(self, moved: FloatArray, together: Sequence[Sequence[int]]) -> FloatArray:
-        """Differences (n_points, n_rows, n_targets) by target, of those (n_points, n_rows, n_moved) moved together."""
+        """Differences by target (n_points, n_rows, n_targets), from those of targets moved together (n_points, n_rows,
+        n_moved)."""
         apart = np.zeros((*moved.shape[:2], len(self.box)))
         for i, targets in enumerate(together):
             for k in targets:

@@ -17,11 +17,11 @@ from .problem import FitProblem
 
 
 class _Cases(NamedTuple):
-    """What the quadratic model of the cases is made of, wherever their offsets may go: halves of derivatives.
+    """Halves of the derivatives that the quadratic model of the cases is made of, before any offset is held.
 
     at         (n_cases, 6) the offsets where it was made
     curvature  (n_cases, 6, 6) of what is minimised by these, the prior among them
-    cross      (n_cases, 6, n_targets) the same by these and the targets
+    cross      (n_cases, 6, n_targets) halves of second derivatives by offsets and targets
     slope      (n_cases, 6) its first derivatives by the offsets
     """
 
@@ -35,15 +35,15 @@ class _Cases(NamedTuple):
 class _Offsets:
     """The offsets of initial states in the quadratic model, those that would leave their range held at its end.
 
-    What is of a held one is zero, but for 1 on the diagonal of the curvature.
+    Entries of a held offset are zero, but for 1 on the diagonal of the curvature.
 
     free       (n_cases, 6) which are not held
     to_end     (n_cases, 6) how far those that are held move
     curvature  (n_cases, 6, 6) halves of second derivatives
-    cross      (6 n_cases, n_targets) the same by these and the targets
+    cross      (6 n_cases, n_targets) halves of second derivatives by offsets and targets
     by_held    (n_targets,) half of what the held ones add to the derivatives by the targets
     alone      (6 n_cases,) best step against their slopes where the targets stand
-    by_target  (6 n_cases, n_targets) the same for a unit step of each target
+    by_target  (6 n_cases, n_targets) best step for a unit step of each target
     promised   fall of what is minimised by the offsets alone
     """
 
@@ -58,7 +58,7 @@ class _Offsets:
 
     @classmethod
     def of(cls, cases: _Cases, limit: FloatArray | None, damping: float, step: FloatArray | None) -> _Offsets:
-        """How they move with the targets.
+        """How the offsets move with the targets.
 
         limit  (n_cases, 6) the ends of their ranges, None where none is held
         step   (n_targets,) of the targets that says which would leave it; None for none
@@ -146,7 +146,7 @@ class Quadratic:
             self.settling = own.promised
 
     def _cases(self) -> _Cases | None:
-        """Those whose offsets are free."""
+        """The cases with all offsets free."""
         if self._limit is None:
             return None
         of_cases = [(self._by_offset[rows].T, rows) for rows in self._rows]
@@ -162,7 +162,7 @@ class Quadratic:
         return np.array([self._by_offset[rows].T @ residuals[rows] for rows in self._rows]) + self._problem.prior * d
 
     def with_residuals(self, d: FloatArray, residuals: FloatArray) -> Quadratic:
-        """The same derivatives around a point nearby."""
+        """The model with the same derivatives around a point nearby."""
         cases = self._plain.cases
         if cases is not None:
             cases = cases._replace(at=d, slope=self._slope(d, residuals))
@@ -170,11 +170,11 @@ class Quadratic:
         return Quadratic(self._problem, d, residuals, self._jacobian, self._by_offset, self._holding, plain=plain)
 
     def damped(self, damping: float) -> Quadratic:
-        """The same with steps of the offsets damped."""
+        """The model with steps of the offsets damped."""
         return self if self._own is None else self._again(damping, None)
 
     def about(self, step: FloatArray) -> Quadratic:
-        """The same with those offsets held that would leave their range beside a step (n_targets,) of the targets."""
+        """The model with the offsets held that would leave their range after a step (n_targets,) of the targets."""
         if not self._holding or self._own is None or self._limit is None:
             return self
         leave = not self._own.free.all() or bool(np.any(np.abs(self._d + self._own.move(step)) > self._limit))
@@ -194,7 +194,7 @@ class Quadratic:
 
     @property
     def scale(self) -> FloatArray:
-        """(n_targets,) what steps are measured in: the residual each target changes."""
+        """(n_targets,) scale of steps: the length of the change of the residuals by each target."""
         return np.sqrt(np.maximum(np.diag(self.hessian), 0.0))
 
     def slope(self, steps: FloatArray, shifts: FloatArray) -> FloatArray:

@@ -41,7 +41,7 @@ MISSED = 3.0
 
 @dataclass(frozen=True)
 class Beside:
-    """What a fit made small beside J.
+    """Terms of the objective beside J.
 
     squares    of the rows of each term before and after, by its name: in variances, so times ``weight.s2`` beside J
     sentences  of each term, see ``Term``, by its name
@@ -78,7 +78,7 @@ class FitResult(Plotted):
 
     unit         (n_targets,) position of the tuned values in the box
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
-    beside       what was made small beside J; None where J is all
+    beside       terms of the objective beside J; None where there are none
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
     ties         coefficients that follow targets, see ``one_sided``
     stated       every stated index beside what the model makes of it
@@ -130,7 +130,7 @@ class FitResult(Plotted):
 
     @property
     def tuned_values(self) -> dict[str, float]:
-        """The same with those of coefficients that are tied to targets."""
+        """Tuned values, with those of coefficients that are tied to targets."""
         return self.theta | followers(self.ties, self.theta)
 
     @property
@@ -199,7 +199,7 @@ class FitResult(Plotted):
         return f"{'; '.join(said)}."
 
     def _J_words(self, role: str) -> str:
-        """What becomes of J over the trials of a role."""
+        """Change of J over the trials of a role, in words."""
         before, after = self.J_of(role, "before"), self.J_of(role, "after")
         if not before or after is None:  # diverged before, or is without error
             return f"is {after:.4g}" if after is not None else "has no value"
@@ -208,7 +208,7 @@ class FitResult(Plotted):
         return f"{size}, from {before:.4g} to {after:.4g}"
 
     def verdict_of_stated(self) -> str:
-        """What became of the stated indices, in one sentence."""
+        """Change of the errors of stated indices, in one sentence."""
         tests = [one for one in self.stated if one.role != "tune"]
         chosen = tests or self.stated
         before, after = (float(np.sqrt(np.mean([one.off(k) ** 2 for one in chosen]))) for k in ("before", "after"))

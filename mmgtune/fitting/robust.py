@@ -1,4 +1,4 @@
-"""Outliers weighed down: least squares repeated with weights taken from its own residuals."""
+"""Robust fit: least squares repeated with weights for outliers from its own residuals."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .least_squares import LeastSquaresResult, solve
 from .problem import FitProblem
 
 ROUNDS = 6
-"""Times outliers are weighed anew."""
+"""Rounds of weighting outliers."""
 
 USUAL = 3.0
 """Robust standard deviations within which a residual counts by its square, beyond which by its size."""
@@ -43,7 +43,8 @@ def huber_weights(cases: Cases, residuals: FloatArray) -> FloatArray:
 def weigh_down(
     problem: FitProblem, best: LeastSquaresResult, ridge: float, anchor: FloatArray
 ) -> tuple[FitProblem, LeastSquaresResult]:
-    """The problem with outliers weighed down, and its solution from ``best``, that of the plain one.
+    """The problem with outliers down-weighted, and its solution, starting from ``best``, the solution of the plain
+    problem.
 
     Iteratively reweighted least squares with Huber's weights; ridge and anchor as for ``solve``.
     """

@@ -174,7 +174,7 @@ def J_free_start(problem: FitProblem, unit: FloatArray) -> float:
 
 
 def beside(problem: FitProblem, before: FloatArray, unit: FloatArray, weight: Weight) -> Beside:
-    """What the terms of a weighed problem come to at two points (n_targets,) of the unit cube."""
+    """The terms of a weighted problem at two points (n_targets,) of the unit cube."""
     squares = {
         name: (float(of[0]), float(of[1])) for name, of in problem.squares(np.column_stack([before, unit])).items()
     }
@@ -192,7 +192,7 @@ def compared_stated(
 
 
 def traded(profile: ShipProfile, trials: TrialSet, problem: FitProblem) -> tuple[str, ...]:
-    """One coefficient of every direction no trial can tell, found at the pre-determined values."""
+    """One coefficient of every direction that no trial determines, found at the pre-determined values."""
     free = np.zeros(len(problem.box), dtype=bool)
     before = problem.box.to_unit(problem.box.pre)
     hold_simulated(profile, problem, before, _tuned_on(trials), "with the values of the profile")
@@ -201,6 +201,6 @@ def traded(profile: ShipProfile, trials: TrialSet, problem: FitProblem) -> tuple
 
 
 def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> FitOptions:
-    """The same options with one coefficient fixed for every direction no trial can tell, found before searching."""
+    """The options with one coefficient fixed for every direction that no trial determines, found before searching."""
     held = traded(profile, trials, make_problem(profile, trials, options))
     return replace(options, fixed=(*options.fixed, *held), identifiable=False)

@@ -1,4 +1,4 @@
-"""What all problems of one fit have in common, and how these are made of profile, trials and options."""
+"""What all problems of one fit have in common, and how problems are made from profile, trials and options."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Setting:
     """What all problems of one fit have in common.
 
     estimated  whether trials start from an estimated state
-    terms      what is made small besides J
+    terms      terms of the objective besides J
     sisters    what sister ships say beforehand, None where they are not asked
     """
 
@@ -52,7 +52,7 @@ class Setting:
     sisters: Pooled | None = None
 
     def holding(self, names: Sequence[str]) -> Setting:
-        """The same with some targets held at their pre-determined values."""
+        """The setting with some targets held at their pre-determined values."""
         left = [name for name in self.box.names if name not in names]
         return replace(self, box=boxed(self.model, left, self.a_r, self.sisters))
 

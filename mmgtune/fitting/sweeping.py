@@ -290,7 +290,7 @@ def _sweep(
 
 
 def _named(hooks: Hooks, a_r: float) -> Hooks:
-    """The same hooks, with the half width in front of every phase."""
+    """The hooks, with the half width in front of every phase."""
     return replace(hooks, on_phase=lambda words: hooks.on_phase(f"a_r = {a_r:g}, {words}"))
 
 

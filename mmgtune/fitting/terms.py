@@ -1,4 +1,4 @@
-"""What a fit makes small besides the squares of time series: further rows of residuals, each over its own deviation.
+"""Terms of the objective besides the squares of time series: further rows of residuals, each over its own deviation.
 
 J is in the units of its paper, not a likelihood.  A row here is a number of known standard deviation, so its square
 belongs with minus twice a logarithm of probability, and J with it once it is divided by s2, the variance of J's
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 
 class Term(Protocol):
-    """Some of these rows.
+    """A group of these rows.
 
     name          what to call them in records: "prior", "indices"
-    known_before  whether they say what was known before any trial, so that they are no data
-    sentence      what became of them, with places for ``weight`` in words and the squares ``old`` and ``new``
+    known_before  whether they are prior knowledge, not data
+    sentence      their change by the fit, with places for ``weight`` in words and the squares ``old`` and ``new``
     """
 
     name: str
@@ -45,7 +45,7 @@ class Term(Protocol):
         ...
 
     def asked(self, problem: FitProblem) -> list[Any]:
-        """What tells these rows from others, as numbers and texts."""
+        """Numbers and texts that identify these rows in a journal."""
         ...
 
 

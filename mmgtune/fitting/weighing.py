@@ -45,7 +45,7 @@ FALL = 1e-9
 
 @dataclass(frozen=True)
 class Weight:
-    """What was found.
+    """The weight and how it was found.
 
     s2           the weight
     independent  differences J counts for, by channel
@@ -93,7 +93,7 @@ def weigh(
 
 
 def weight_at(problem: FitProblem, at: LeastSquaresResult, learning: bool = True) -> Weight:
-    """The weight that residuals at a point call for; ``learning`` counts degrees of freedom."""
+    """The weight from the residuals at a point; ``learning`` counts degrees of freedom."""
     residuals = problem.residuals(at.unit[:, None], at.offsets[:, None])[0]
     series = series_of(problem)
     learnt = dict.fromkeys(series, 0.0)
