@@ -30,6 +30,7 @@ class Diagnosis(Answer):
     unlike_any what values of each run take of mass and inertia that no ship has, in words; "" for nothing
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
+    jumped    runs whose position jumps, and that were taken in parts there, in words
     contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
     leading      the first of the causes, where these are not believed together and it removes most alone; None else

@@ -28,6 +28,7 @@ from ..trial.set_checks import turn_away
 from .contributions import set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
+from .jumped import in_parts
 from .leftover import leftover
 from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
@@ -114,6 +115,9 @@ def _looked_at(
     """The answer of the trials that are not kept for testing; how long it took is for the caller to say."""
     odd = oddities(trials.trials, profile.L_pp) if choice is None else []
     odd += _derived(trials.trials)
+    jumped: list[str] = []
+    if choice is None and options.restart is None:
+        trials, jumped = in_parts(trials)
     trials = in_pieces(trials, options.fit_options())
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
@@ -142,9 +146,10 @@ def _looked_at(
     result, found = judge.answer(found, brought)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
-    warnings = (*odd, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
+    beside = [f"{one}: it was taken in parts there, which begin where their own first samples say" for one in jumped]
+    warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     contradicted = _contradicted(trials.trials) if result.verdict == "unexplained" and choice is None else ""
-    return replace(result, warnings=warnings, contradicted=contradicted)
+    return replace(result, warnings=warnings, contradicted=contradicted, jumped=tuple(jumped))
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:

@@ -173,6 +173,7 @@ class Answer(Plotted):
     moved: tuple[Retuned, ...] = ()
     instead: Instead | None = None
     contradicted: str = ""
+    jumped: tuple[str, ...] = ()
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
     more: bool = False

@@ -16,7 +16,7 @@ from ..resources import folder, looked_for, must_be_name, profile_names, taken, 
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
-from .pieces import windows
+from .pieces import divided, windows
 from .raw_logs import LogInstead, instead, logs_instead
 from .split import SPLIT, Split, read_split
 from .voyage import Voyage
@@ -111,6 +111,17 @@ class TrialSet(Plotted):
 
         cut = {piece.id: piece for of_one in pieces.values() for piece in of_one}
         return replace(self, trials=cut, tune=ids(self.tune), test=ids(self.test))
+
+    def divided(self, rows: Mapping[str, Sequence[int]]) -> TrialSet:
+        """The same set with some trials divided at rows, by id; each piece has the role of its trial."""
+        pieces = {name: divided(trial, rows.get(name, ())) for name, trial in self.trials.items() if rows.get(name)}
+
+        def ids(names: tuple[str, ...]) -> tuple[str, ...]:
+            return tuple(id for name in names for id in ([one.id for one in pieces.get(name, ())] or [name]))
+
+        kept = {name: trial for name, trial in self.trials.items() if name not in pieces}
+        cut = {piece.id: piece for of_one in pieces.values() for piece in of_one}
+        return replace(self, trials=kept | cut, tune=ids(self.tune), test=ids(self.test))
 
     def hashes(self) -> dict[str, str]:
         """SHA-256 of each trial's file, by id."""

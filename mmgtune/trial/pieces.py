@@ -1,7 +1,9 @@
-"""Long trials cut into windows, each simulated anew from a measured state."""
+"""Trials cut into windows, or divided at rows, each piece simulated anew from a measured state."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,6 +27,20 @@ def windows(trial: Trial, length: float, every: float | None = None) -> list[Tri
     whole = np.flatnonzero(np.isfinite(trial.motion).all(axis=1))
     pieces, _ = cuts(trial.t, whole, length, every)
     return [_piece(trial, first, last + 1) for first, last in pieces]
+
+
+def divided(trial: Trial, rows: Sequence[int]) -> list[Trial]:
+    """The pieces of a trial before and after some of its rows, each from its first complete sample; see ``windows``.
+
+    One of fewer than FEWEST_SAMPLES samples is left out.
+    """
+    whole = np.flatnonzero(np.isfinite(trial.motion).all(axis=1))
+    found = []
+    for first, end in itertools.pairwise([0, *rows, trial.n_samples]):
+        inside = whole[(whole >= first) & (whole < end)]
+        if len(inside) and end - inside[0] >= FEWEST_SAMPLES:
+            found.append(_piece(trial, int(inside[0]), end))
+    return found
 
 
 def cuts(

@@ -1,0 +1,61 @@
+"""A position that jumps is a fault of its receiver: the run is taken in parts there, and nothing else is blamed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.diagnose import diagnose
+from mmgtune.diagnose.jumped import in_parts
+from mmgtune.options import DiagnoseOptions
+from mmgtune.profile import load_profile
+from mmgtune.trial import TrialSet, load_trials
+from tests.hidden.plant import simulate, write
+
+OPTIONS = DiagnoseOptions(effects=("gyro-drift", "heading-bias", "current", "rudder-gain"))
+
+
+def with_jump(trials: TrialSet, id: str, *jumps: tuple[int, float]) -> TrialSet:
+    """The trials, in one of which the position jumps northwards at rows by so many metres."""
+    trial = trials.trials[id]
+    x = np.array(trial.x)
+    for row, metres in jumps:
+        x[row:] += metres
+    return replace(trials, trials={**trials.trials, id: replace(trial, x=x)})
+
+
+@pytest.fixture(scope="module")
+def sailed(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("jumped")
+    write(simulate({}, {}, seed=4), folder)
+    return load_trials(folder)
+
+
+def test_a_run_is_divided_where_its_position_jumps(sailed):
+    id = "zigzag_20"
+    whole = sailed.trials[id]
+    row = whole.n_samples // 2
+    divided, told = in_parts(with_jump(sailed, id, (row, 16.0)))
+    first, second = [one for one in divided.trials.values() if one.run == id]
+    assert told[0].startswith(f"the position of {id} jumps by 15.")  # of 16 m, beside the noise
+    assert abs(first.n_samples - row) <= 1
+    assert first.n_samples + second.n_samples == whole.n_samples
+    assert second.begins == pytest.approx(whole.t[first.n_samples])
+    before, after = (sailed.tune, divided.tune) if id in sailed.tune else (sailed.test, divided.test)
+    assert [one for one in after if one not in before] == [first.id, second.id]
+    assert in_parts(sailed) == (sailed, [])
+
+
+def test_a_receiver_that_jumps_all_the_time_is_left(sailed):
+    id = "turn_p20"
+    rows = range(60, sailed.trials[id].n_samples - 60, 60)
+    shaken = with_jump(sailed, id, *((row, 20.0 * (-1.0) ** k) for k, row in enumerate(rows)))
+    assert in_parts(shaken) == (shaken, [])
+
+
+def test_nothing_else_is_blamed_for_it(sailed):
+    id = sailed.tune[-1]
+    result = diagnose(load_profile("suzaku"), with_jump(sailed, id, (sailed.trials[id].n_samples // 2, 16.0)), OPTIONS)
+    assert (result.verdict, result.causes) == ("none", ())
+    assert result.sentence().startswith(f"The position of {id} jumps by")
+    assert any("taken in parts there" in one for one in result.warnings)
