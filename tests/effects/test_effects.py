@@ -28,6 +28,7 @@ STRONG = {
     "backlash": {"play": 0.05},
     "rudder-gain": {"factor": 0.9, "starboard": 1.1, "port": 0.95},
     "rudder-offset": {"angle": 0.02},
+    "rudder-limit": {"angle": 0.35},
     "governor-lag": {"time_constant": 40.0},
     "rpm-scale": {"factor": 1.03},
     "current": {"north": 0.2, "east": -0.1},

@@ -303,6 +303,8 @@ def test_sensors_with_a_number_or_two(tag, value, seen):
     [
         ("rudder-offset", 0.02, Control(1.7, 0.32)),
         ("rudder-gain", 0.9, Control(1.7, 0.3 * 0.9 * 0.9)),  # of both sides, and of starboard
+        ("rudder-limit", 0.25, Control(1.7, 0.25)),
+        ("rudder-limit", 0.35, Control(1.7, 0.3)),
         ("backlash", 0.1, Control(1.7, 0.3)),  # in the middle of its play
         ("governor-lag", 5.0, Control(1.7, 0.3)),  # settled
         ("rpm-scale", 1.1, Control(1.87, 0.3)),

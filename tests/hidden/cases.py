@@ -216,6 +216,7 @@ LADDER: dict[str, Draw] = {
     "propeller-side-force": _side_force,
     "memory": _one_of(*(_plain(name, (0.1, 0.4, 2.0, 8.0, 16.0)) for name in ("time_constant", "sway", "yaw"))),
     "rudder-stall": _degrees(_plain("angle", (38.0, 35.0, 32.0, 28.0, 22.0))),
+    "rudder-limit": _degrees(_plain("angle", (39.9, 39.0, 36.0, 30.0, 22.0))),
     "hull-term": _one_of(*(hull_term(term) for term in HULL_TERMS)),
     "antenna": _one_of(_vector(("x", "y"), _sensor(12.0)), _vector(("x_alone", "y_alone"), _sensor(12.0))),
     "heading-bias": _degrees(_one_of(_signed("angle", _sensor(1.5)), _signed("alone", _sensor(1.5)))),
@@ -245,7 +246,7 @@ LADDER: dict[str, Draw] = {
 }
 """By tag, the effect at five levels: below visible, hardly, small, typical, and well above."""
 
-DRAWN = [tag for tag in LADDER if tag not in ("water-log", "steady-force", "hull-asymmetry", "thrust")]
+DRAWN = [tag for tag in LADDER if tag not in ("water-log", "steady-force", "hull-asymmetry", "thrust", "rudder-limit")]
 """Those that pairs and triples are drawn from: as when they were first drawn, so that results stay comparable."""
 
 

@@ -249,11 +249,11 @@ def logged_revolutions(n_0, u, v):
 
 @njit(cache=True)
 def blade_angle(s, followed, play):
-    """Blade angle [rad] from that of the gear, after its lag: play, gain, zero."""
+    """Blade angle [rad] from that of the gear, after its lag: play, gain, zero, stop."""
     angle = min(max(play, followed - s.half_play), followed + s.half_play)
     side = s.gain_stbd if angle > 0.0 else s.gain_port
     side *= 1.0 - s.unknown_indicator_cubic * (angle / np.radians(35.0)) ** 2
-    return s.rudder_gain * side * angle + s.rudder_offset
+    return min(max(s.rudder_gain * side * angle + s.rudder_offset, -s.rudder_limit), s.rudder_limit)
 
 
 @njit(cache=True)

@@ -127,6 +127,7 @@ NULL: dict[str, dict[str, float]] = {
     "propeller-side-force": {"force": 1.0, "moment": 1.0},
     "memory": {"time_constant": 0.0, "sway": 0.0, "yaw": 0.0},
     "rudder-stall": {"angle": np.inf},
+    "rudder-limit": {"angle": np.inf},
     "hull-term": dict.fromkeys(HULL_TERMS, 0.0),
     "antenna": {"x": 0.0, "y": 0.0, "x_alone": 0.0, "y_alone": 0.0},
     "heading-bias": {"angle": 0.0, "alone": 0.0},
@@ -192,6 +193,7 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["memory_Y"] = e["memory"]["time_constant"] + e["memory"]["sway"]
     p["memory_N"] = e["memory"]["time_constant"] + e["memory"]["yaw"]
     p["stall_angle"] = e["rudder-stall"]["angle"]
+    p["rudder_limit"] = e["rudder-limit"]["angle"]
     p.update({name.replace("-", "_"): e[name]["magnitude"] for name in UNKNOWN})
     half = 0.5 * p["rho"] * p["L_pp"] * p["d"]
     p["force"], p["moment"] = half, half * p["L_pp"]
