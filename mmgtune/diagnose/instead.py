@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..fitting.least_squares import fit_offsets
+from ..phrases import in_percent
 from .base_fit import PRECISE
 from .hypotheses import Hypothesis
 from .intervals import Estimate
@@ -58,11 +59,11 @@ class Instead:
         """What re-tuning may stand for."""
         other = f"no other promises more than {100.0 * MATTERS:.0f} %"
         if self.next_effect:
-            other = f"the next best, {self.next_effect}, {100.0 * self.next_share:.0f} %"
+            other = f"the next best, {self.next_effect}, {in_percent(self.next_share)}"
         words = self.words[0].lower() + self.words[1:]
         return (
             "Re-tuning may stand for a cause: with all coefficients as the profile has them, one cause alone removes "
-            f"{100.0 * self.share:.3g} % of what re-tuning removes, {other}. If so: {words}."
+            f"{in_percent(self.share)} of what re-tuning removes, {other}. If so: {words}."
         )
 
     def to_dict(self) -> dict[str, Any]:

@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..errors import ProfileError, must_be_a
 from ..files import kept_in
 from ..fitting.extending import with_width
@@ -25,6 +27,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, oddities
 from ..trial.schema import MOTION
 from ..trial.set_checks import turn_away
+from ..trial.swell import period_of, swings
 from .contributions import set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
@@ -115,6 +118,7 @@ def _looked_at(
     """The answer of the trials that are not kept for testing; how long it took is for the caller to say."""
     odd = oddities(trials.trials, profile.L_pp) if choice is None else []
     odd += _derived(trials.trials)
+    whole = trials.trials
     jumped: list[str] = []
     if choice is None and options.restart is None:
         trials, jumped = in_parts(trials)
@@ -148,7 +152,9 @@ def _looked_at(
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     beside = [f"{one}: it was taken in parts there, which begin where their own first samples say" for one in jumped]
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
-    contradicted = _contradicted(trials.trials) if result.verdict == "unexplained" and choice is None else ""
+    contradicted = ""
+    if result.verdict == "unexplained" and choice is None:
+        contradicted = _contradicted(whole) or _swinging(whole, profile.L_pp)
     return replace(result, warnings=warnings, contradicted=contradicted, jumped=tuple(jumped))
 
 
@@ -167,6 +173,18 @@ def _contradicted(trials: Mapping[str, Trial]) -> str:
     return (
         f"First put the logs right: in {of} the ship turns away from her rudder, so the sign of its angle is wrong, or "
         "those of heading and yaw rate."
+    )
+
+
+def _swinging(trials: Mapping[str, Trial], L_pp: float) -> str:
+    """That the ship swings in most trials as in waves, which may be all that is left; "" where she does not."""
+    periods = [period_of(found) for trial in trials.values() if (found := swings(trial, L_pp))]
+    if 2 * len(periods) <= len(trials):
+        return ""
+    of = f"{len(periods)} of {len(trials)} trials" if len(trials) > 1 else "the trial"
+    return (
+        f"In {of} the ship swings from beginning to end with a period of {np.median(periods):.2g} s, as in waves, "
+        "which no manoeuvring model follows: that may be all that is left."
     )
 
 

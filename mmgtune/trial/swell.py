@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -61,11 +61,10 @@ def swell_findings(trial: Trial, where: str, L_pp: float | None = None) -> list[
 
     L_pp  of the ship [m], where it is known
     """
-    found = list(_swings(trial, L_pp))
-    middle = float(np.median([one.period for one in found])) if found else 1.0
-    found = [one for one in found if abs(one.period / middle - 1.0) < ALIKE]
-    if len(found) < 2 or max(one.share for one in found) < NOTICED:
+    found = swings(trial, L_pp)
+    if not found:
         return []
+    middle = period_of(found)
     told = ", ".join(
         f"'{one.channel}' by {one.amplitude / CHANNELS[one.channel][1]:.2g} {CHANNELS[one.channel][0]}" for one in found
     )
@@ -79,6 +78,22 @@ def swell_findings(trial: Trial, where: str, L_pp: float | None = None) -> list[
             "swell",
         )
     ]
+
+
+def swings(trial: Trial, L_pp: float | None = None) -> list[Swing]:
+    """Channels that swing alike from beginning to end, faster than a ship steers: two or more, else none.
+
+    L_pp  of the ship [m], where it is known
+    """
+    found = list(_swings(trial, L_pp))
+    middle = period_of(found) if found else 1.0
+    found = [one for one in found if abs(one.period / middle - 1.0) < ALIKE]
+    return [] if len(found) < 2 or max(one.share for one in found) < NOTICED else found
+
+
+def period_of(found: Sequence[Swing]) -> float:
+    """Period [s] of channels that swing alike."""
+    return float(np.median([one.period for one in found]))
 
 
 def _swings(trial: Trial, L_pp: float | None) -> Iterator[Swing]:

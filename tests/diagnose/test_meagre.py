@@ -12,6 +12,7 @@ from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
 from mmgtune.errors import OptionError
 from mmgtune.trial import Trial
 from mmgtune.trial.set_checks import turn_away
+from mmgtune.units import DEG
 
 ATTRIBUTES = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
 
@@ -71,3 +72,24 @@ def test_a_rudder_of_the_wrong_sign_is_told_first():
     result = diagnose("suzaku", replace(trials, trials=wrong, tune=tuple(wrong), test=()), asked)
     assert result.verdict == "unexplained"
     assert result.sentence().startswith("First put the logs right: in 3 of 3 trials the ship turns away from")
+
+
+def test_a_ship_that_swings_in_waves_is_told_first():
+    """Nothing that is known explains it, and nothing has to."""
+    trials = load_trials("suzaku")
+    ids = trials.tune[:3]
+    swung = {}
+    for id in ids:
+        one = trials.trials[id]
+        phase = 2.0 * np.pi * one.t / 7.0
+        swung[id] = replace(
+            one,
+            psi=one.psi + 0.7 * DEG * np.sin(phase),
+            r=one.r + 0.7 * DEG * 2.0 * np.pi / 7.0 * np.cos(phase),
+            v_m=one.v_m + 0.1 * np.cos(phase),
+        )
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",))
+    result = diagnose("suzaku", replace(trials, trials=swung, tune=ids, test=()), asked)
+    assert result.verdict == "unexplained"
+    assert result.sentence().startswith("In 3 of 3 trials the ship swings from beginning to end with a period of 7 s")
+    assert "as in waves" in result.to_dict()["headline"]
