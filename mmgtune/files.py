@@ -67,11 +67,13 @@ def hold_flag(overwrite: object) -> None:
 def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
     """A temporary path beside ``path``, renamed to it when the block ends well and removed when it does not.
 
-    Raises OutputError where ``path`` exists and ``overwrite`` is false, or the system refuses to write.
+    Raises OutputError where ``path`` exists and ``overwrite`` is false, where a pipe, a socket or a device is there,
+    or the system refuses to write.
     """
     hold_flag(overwrite)
     if not overwrite and os.path.lexists(path):  # a link to nowhere would be replaced too
         raise OutputError(exists(path))
+    refuse_irregular(path)
     with half(path) as part:
         yield part
         with part.open("rb") as file:
@@ -199,17 +201,36 @@ def write_text(path: Path, text: str, overwrite: bool = True) -> Path:
 def refuse_existing(paths: Iterable[Path], overwrite: bool = False) -> None:
     """Raises OutputError with each of these outputs that is already there, unless they are to be replaced.
 
-    Also, and in any case, where a folder that one is to lie in is a file.
+    Also, and in any case, where a folder that one is to lie in is a file, and where one is a pipe or a device.
     """
     paths = tuple(paths)
     for folder in dict.fromkeys(path.parent for path in paths):
         refuse_file(folder)
+    for path in paths:
+        refuse_irregular(path)
     hold_flag(overwrite)
     if overwrite:
         return
     found = [exists(path) for path in dict.fromkeys(paths) if os.path.lexists(path)]
     if found:
         raise OutputError(*found)
+
+
+def refuse_irregular(path: Path) -> None:
+    """Raises OutputError where a pipe, a socket or a device is at a path: a file would take its place, not go into it.
+
+    Also for a link such as /dev/stdout, whatever it leads to at this moment.
+    """
+    try:
+        mode = path.stat().st_mode
+        stands = stat.S_ISREG(mode) or stat.S_ISDIR(mode)
+        if path.is_symlink() and os.readlink(path).startswith("/proc/"):
+            stands = False
+    except (OSError, ValueError):  # nothing is there, or writing says what is wrong with it
+        return
+    if not stands:
+        why = "it is a pipe, a socket or a device, and results are put in the place of what is there"
+        raise OutputError(Problem("the output is not a file", str(path), why, "give the name of a file"))
 
 
 def refuse_file(folder: Path) -> None:

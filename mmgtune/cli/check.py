@@ -120,6 +120,7 @@ def command(
         given.refuse_beside("update_baseline", baseline)
         _update(names, options, given)
     else:
+        given.hold()
         with c.placed(out, force=force):
             report = _checked(names, options, given)
         raise typer.Exit(CODES[report.verdict])
@@ -217,6 +218,13 @@ class Given:
         if asked := [option for option, value in of_a_check.items() if value]:
             raise OptionError(*(Problem(f"it does not go with {name}=True", one, why, "leave it out") for one in asked))
 
+    def hold(self) -> None:
+        """Raises OutputError where a file that is asked for cannot be written, before any work."""
+        from ..checking.renderers.junit import refuse_other
+
+        if self.junit is not None:
+            refuse_other(self.junit)
+
     def __call__(self, report: CheckReport) -> None:
         """Print the report, and write it to the files asked for."""
         from ..checking.renderers import RENDERERS
@@ -264,7 +272,12 @@ class Given:
             write_text(self.junit, RENDERERS["junit"](report))
         if self.summary is not None:
             try:
-                with self.summary.open("a", encoding="utf-8") as file:
+                with open(self.summary, "a", encoding="utf-8", opener=_without_waiting) as file:
                     file.write(RENDERERS["markdown"](report))
             except OSError as error:
                 raise cannot_write(self.summary, error) from error
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open a file; a pipe that nobody reads from is an error."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0), 0o666)

@@ -1,6 +1,7 @@
 """``mmgtune check`` as a CI server runs it: exit codes, files, and nothing lost."""
 
 import json
+import os
 import shutil
 
 import pyarrow.parquet as pq
@@ -248,3 +249,41 @@ def test_what_would_be_ignored_is_refused(ready, asked, said):
 def test_the_sensitivity_as_json_by_either_name(ready):
     one, other = (check(ready, "--sensitivity", "0.02", *more) for more in (("--json",), ("--format", "json")))
     assert one.json() == other.json()
+
+
+@pytest.mark.parametrize("node", ["pipe", "stdout"])
+def test_a_pipe_or_a_device_is_not_replaced_by_a_report(ready, node):
+    path = ready / "junit.xml"
+    if node == "pipe":
+        os.mkfifo(path)
+    else:
+        path.symlink_to("/proc/self/fd/1")  # as /dev/stdout is
+    before = path.lstat()
+    ended = check(ready, "--junit", "junit.xml")
+    assert ended.code == 2
+    assert "error: the output is not a file (junit.xml)" in ended.err
+    assert "fix: give the name of a file" in ended.err
+    assert not ended.out
+    after = path.lstat()
+    assert (after.st_ino, after.st_mode) == (before.st_ino, before.st_mode)
+
+
+def test_only_an_older_report_is_replaced_by_a_report(ready):
+    path = ready / "notes.xml"
+    shutil.copy(ready / "ship.toml", ready / "kept.toml")
+    ended = check(ready, "--junit", "kept.toml")
+    assert ended.code == 2
+    assert "what is there is no JUnit report, and would be lost" in ended.err
+    assert (ready / "kept.toml").read_bytes() == (ready / "ship.toml").read_bytes()
+    for older in ("", '<?xml version="1.0"?>\n<!-- made at night -->\n<testsuite name="x"/>\n'):
+        path.write_text(older, encoding="utf-8")
+        assert check(ready, "--junit", "notes.xml").code == 0
+        assert check(ready, "--junit", "notes.xml").code == 0
+    check_junit(path.read_text(encoding="utf-8"))
+
+
+def test_a_summary_for_a_pipe_that_nobody_reads(ready):
+    os.mkfifo(ready / "summary.md")
+    ended = check(ready, "--summary", "summary.md")
+    assert ended.code == 2
+    assert "cannot write the output (summary.md)" in ended.err

@@ -67,3 +67,26 @@ def test_what_is_written_into_a_pipe_is_read(tmp_path: Path) -> None:
         late.set()
         os.close(kept)
         writer.join()
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        (("predict", "suzaku", "--turn", "20", "-o", "out", "--force"), "out/report.html"),
+        (("profile", "new", "new.toml", "--from", "suzaku", "--force"), "new.toml"),
+        (("check", "suzaku", "suzaku", "-b", "base.json", "--junit", "j.xml"), "j.xml"),
+    ],
+)
+def test_nothing_is_written_in_the_place_of_a_pipe(line: tuple[str, ...], name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    (path.parent / "predict.json").write_text("{}")
+    os.mkfifo(path)
+    process = start(*line, cwd=tmp_path)
+    try:
+        _, said = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 2, said
+    assert f"error: the output is not a file ({name})" in said
+    assert path.is_fifo()

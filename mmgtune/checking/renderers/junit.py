@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
+from ...errors import OutputError, Problem
+from ...files import cannot_write, refuse_existing
 from ..result import CheckReport, Item
 from .numbers import told
 
 _ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+_BEGINS = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<\?.*?\?>\s*|<!.*?>\s*)*<testsuites?[\s/>]", re.DOTALL)
+_LOOKED_AT = 4096
+"""Bytes in which a report says what it is."""
 
 
 def render(report: CheckReport) -> str:
@@ -32,6 +39,21 @@ def render(report: CheckReport) -> str:
             error.text = _clean(str(problem))
     ET.indent(root)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def refuse_other(path: Path) -> None:
+    """Raises OutputError where a report is to go to what is there and is none: an older report may be replaced."""
+    refuse_existing([path], overwrite=True)
+    try:
+        with path.open("rb") as file:
+            begins = file.read(_LOOKED_AT)
+    except OSError as error:
+        if path.exists():
+            raise cannot_write(path, error) from error
+        return
+    if begins.strip() and not _BEGINS.match(begins):
+        why = "what is there is no JUnit report, and would be lost"
+        raise OutputError(Problem("the output exists already", str(path), why, "give another name"))
 
 
 def _suite(
