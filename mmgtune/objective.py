@@ -189,4 +189,7 @@ def _nothing_counts(trial: Trial, objective: Objective) -> Problem:
     if objective.every is not None and replace(objective, every=None).weight(trial).any():
         where, fix = "every", f"choose a time below {trial.t[-1] - trial.t[0]:g} s, or leave the trial out of the split"
     why = f"it lasts from {trial.t[0]:g} to {trial.t[-1]:g} s and needs two samples or more that count"
-    return Problem(f"trial '{trial.id}' has no sample to compare with", where, why, fix)
+    which = (
+        f"trial '{trial.whole}'" if not trial.part_of else f"the window of trial '{trial.whole}' at {trial.begins:g} s"
+    )
+    return Problem(f"{which} has no sample to compare with", where, why, fix)

@@ -17,13 +17,14 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Backend, Cases, Integrator
+from ..errors import Problem, TrialError
 from ..fitting.initial import noise_of
 from ..fitting.journal import remembered
 from ..model import Model
 from ..objective import PAPER_CHANNELS, Objective, cases_of
 from ..profile import ShipProfile, scale_of
 from ..trial import Trial
-from ..trial.pieces import windows
+from ..trial.pieces import counting, windows
 from .room import Room
 
 LENGTHS = 2.5
@@ -112,11 +113,15 @@ class Windowed:
 def make_windowed(
     room: Room, trials: Sequence[Trial], backend: Backend, integrator: Integrator = Integrator("rk4")
 ) -> Windowed:
-    """Trials cut into windows, compared in position and heading."""
+    """Trials cut into windows, compared in position and heading.
+
+    Raises TrialError for a trial that is too short.
+    """
     model = Model(room.profile)
     scale = scale_of(room.profile)
     unit = scale.L / scale.U
     sigma = np.maximum(np.median([noise_of(trial) for trial in trials], axis=0), least_noise(room.profile))
+    _hold_long(trials, APART * unit)
     pieces = [piece for trial in trials for piece in windows(trial, LENGTHS * unit, APART * unit)]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(PAPER_CHANNELS, 1.0), every=APART * unit)
     cases = cases_of(pieces, objective, model.inputs, model.draught)
@@ -136,6 +141,24 @@ def make_windowed(
             covariance = np.eye(len(rows)) + by_start[rows] @ by_start[rows].T
             whitened.append((rows, np.linalg.inv(np.linalg.cholesky(covariance))))
     return Windowed(room, model, tuple(trials), cases, sigma, tuple(whitened), backend, integrator)
+
+
+def _hold_long(trials: Sequence[Trial], apart: float) -> None:
+    """Raises TrialError for trials without a complete sample so long [s] after another: nothing is compared in them."""
+    short = [trial for trial in trials if not _is_compared(trial, apart)]
+    if short:
+        why = f"positions and headings are compared {apart:.3g} s apart for this ship, and it has no two such samples"
+        fix = "leave it out of the split, or give a longer one"
+        raise TrialError(
+            *(Problem(f"trial '{one.id}' is too short", str(one.path or one.id), why, fix) for one in short)
+        )
+
+
+def _is_compared(trial: Trial, apart: float) -> bool:
+    measured = np.isfinite(trial.motion)
+    whole = np.flatnonzero(measured.all(axis=1))
+    counts = counting(trial.t[whole[0] :], apart) if len(whole) else np.zeros(0, dtype=bool)
+    return bool(measured[whole[0] :, :3][counts].any()) if len(whole) else False
 
 
 def least_noise(profile: ShipProfile) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,6 +16,8 @@ from mmgtune.posterior import posterior
 from mmgtune.posterior.room import make_room, tags_of
 from mmgtune.posterior.sizing import Shown, group_of, shown_by
 from mmgtune.profile import load_profile
+from mmgtune.trial import TrialSet
+from mmgtune.trial.schema import ATTRIBUTES
 from tests.hidden.cases import null
 from tests.hidden.plant import SILENT, simulate
 from tools.band_coverage import scored
@@ -133,6 +136,18 @@ def test_particles_hold_what_trials_do_not_tell(starboard):
 def test_no_trials_say_so(ship):
     with pytest.raises(TrialError, match="no time series"):
         posterior(ship, [])
+
+
+def test_a_trial_of_three_samples_is_too_short(ship, sailed, tmp_path):
+    turn = sailed[0]["turn_p10"]
+    columns = {name: getattr(turn, name)[:3] for name in ATTRIBUTES.values()}
+    short = replace(turn, extra={name: values[:3] for name, values in turn.extra.items()}, **columns)
+    few = TrialSet({"turn_p10": short}, ("turn_p10",), ())
+    with pytest.raises(TrialError, match="trial 'turn_p10' is too short") as error:
+        posterior(ship, few, QUICK, folder=tmp_path)
+    (problem,) = error.value.problems
+    assert "are compared 10.8 s apart for this ship" in problem.why
+    assert not list(tmp_path.iterdir())
 
 
 def test_kinds_and_sides_have_names(sailed):
