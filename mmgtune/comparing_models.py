@@ -19,7 +19,7 @@ from .bands import Pooled, WindowScore, pooled
 from .displayed import Brief, Displayed
 from .documents import write_json
 from .errors import OptionError, Problem, closest, must_be_a
-from .files import path_of, refuse_existing
+from .files import all_or_none, path_of, refuse_existing
 from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
@@ -301,6 +301,7 @@ def _only(data: TrialSet, only: Sequence[str]) -> TrialSet:
     )
 
 
+@all_or_none()
 def write_model_comparison(
     result: ModelComparison,
     folder: Path | str,

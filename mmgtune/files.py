@@ -10,12 +10,16 @@ import secrets
 import stat
 import sys
 from collections.abc import Iterable, Iterator
+from contextvars import ContextVar
 from pathlib import Path
 
 from .errors import OptionError, OutputError, Problem, brief, kind_of, reason
 
 _PARTS: set[Path] = set()
 """Temporary files of this process."""
+
+_TOGETHER: ContextVar[list[Path] | None] = ContextVar("together", default=None)
+"""New files of which none is to stay where one cannot be written."""
 
 _LEFT = re.compile(r"\..+\.[a-z0-9_]{8}\.part")
 """What ``atomic`` calls its temporary files."""
@@ -78,7 +82,29 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
         yield part
         with part.open("rb") as file:
             os.fsync(file.fileno())
+        made = _TOGETHER.get()
+        if made is not None and not os.path.lexists(path):
+            made.append(path)
         os.replace(part, path)
+
+
+@contextlib.contextmanager
+def all_or_none() -> Iterator[None]:
+    """Where an error ends this context, or the function that it decorates, the new files written in it go again.
+
+    What was there before and was replaced stays replaced.
+    """
+    made: list[Path] = []
+    token = _TOGETHER.set(made)
+    try:
+        yield
+    except BaseException:
+        for path in made:
+            with contextlib.suppress(OSError):
+                path.unlink()
+        raise
+    finally:
+        _TOGETHER.reset(token)
 
 
 @contextlib.contextmanager

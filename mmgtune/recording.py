@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .documents import write_json
-from .files import path_of, refuse_existing, write_text
+from .files import all_or_none, path_of, refuse_existing, write_text
 from .inputs import INPUTS
 from .motions import Motion, orders_of, simulate_trials
 from .physics.quantities import STATES
@@ -28,6 +28,7 @@ MOST = 400
 """Trials or windows whose motions are kept for the report of a validation."""
 
 
+@all_or_none()
 def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folder: Path, command: str) -> None:
     """Write simulate.json beside the trial files, and the motions its report draws.
 
@@ -59,6 +60,7 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
     )
 
 
+@all_or_none()
 def write_validation(
     result: Validation, data: TrialSet, folder: Path | str, command: str = "", *, overwrite: bool = False
 ) -> dict[str, Any]:

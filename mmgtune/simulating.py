@@ -14,7 +14,7 @@ from .backends import Integrator
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, among, brief, must_be_a
 from .evaluation import TrialRecord, evaluate
-from .files import path_of, refuse_existing
+from .files import all_or_none, path_of, refuse_existing
 from .given import ShipGiven, TrialsGiven, some_of
 from .inputs import INPUTS
 from .manoeuvres.criteria import Criterion, check_stopping
@@ -126,9 +126,10 @@ class Simulated(Plotted, Sequence[Motion]):
         ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in motions]
         paths = [folder / f"{id}.parquet" for id in ids]
         refuse_existing(paths, overwrite)
-        for id, motion, path in zip(ids, motions, paths, strict=True):
-            trial = as_trial(self.predictor, replace(motion, id=id), with_forces=with_forces)
-            write_trial(trial, path, overwrite=overwrite)
+        with all_or_none():
+            for id, motion, path in zip(ids, motions, paths, strict=True):
+                trial = as_trial(self.predictor, replace(motion, id=id), with_forces=with_forces)
+                write_trial(trial, path, overwrite=overwrite)
         return paths
 
     def to_dict(self) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..documents import write_json
 from ..errors import must_be_a
-from ..files import path_of, refuse_existing, write_text
+from ..files import all_or_none, path_of, refuse_existing, write_text
 from ..fitting.folder import motions_table
 from ..fitting.journal import finished
 from ..run_folders import MOTIONS
@@ -19,6 +19,7 @@ RESULT = "diagnosis.json"
 CALM = "calm.toml"
 
 
+@all_or_none()
 def write_diagnosis(result: Diagnosis, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write the extended profile, the held-out motions and, last, the result.  Returns its document.
 

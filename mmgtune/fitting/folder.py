@@ -12,6 +12,7 @@ from ..backends import STATES
 from ..documents import write_json
 from ..errors import must_be_a
 from ..files import (
+    all_or_none,
     path_of,
     refuse_existing,
     write_text,
@@ -26,6 +27,7 @@ from .result import FitResult
 RESULT = "fit.json"
 
 
+@all_or_none()
 def write_run(result: FitResult, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document.
 

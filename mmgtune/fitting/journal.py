@@ -8,6 +8,7 @@ the file is executed on loading.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import json
@@ -21,7 +22,7 @@ from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
-from ..errors import OptionError, Problem
+from ..errors import MmgtuneError, OptionError, OutputError, Problem
 from ..files import cannot_write, write_text
 from .checkpoint import NAME as CHECKPOINT
 from .checkpoint import differing, nothing_to_resume
@@ -114,6 +115,22 @@ class Journal:
         except OSError as error:
             raise cannot_write(self.path, error) from error
 
+    @property
+    def noted(self) -> bool:
+        """Whether there is work in it, or beside it, that need not be done again."""
+        return bool(self._noted) or any(path.is_file() for path in self._beside)
+
+    def remove(self) -> None:
+        """Take the file away, and what is resumed together with it."""
+        self.close()
+        for path in (self.path, *self._beside):
+            with contextlib.suppress(OSError):
+                path.unlink()
+
+    @property
+    def _beside(self) -> tuple[Path, ...]:
+        return (self.path.parent / CHECKPOINT,) if self.path.name == NAME else ()
+
     def close(self) -> None:
         """Let go of the file."""
         if self._file is not None:
@@ -130,7 +147,8 @@ def journalled(
 ) -> Iterator[None]:
     """What is searched for within this context is noted in the folder; part of a longer run is noted in its journal.
 
-    The journal stays until the result of the run is written: see ``finished``.
+    The journal stays until the result of the run is written: see ``finished``.  Of a run that is refused, or that
+    cannot be, none is left.
 
     name  of its file, for what may share a folder with another run
     Raises OptionError where there is nothing to resume, or it belongs to another run.
@@ -143,6 +161,10 @@ def journalled(
     token = _ACTIVE.set(journal)
     try:
         yield
+    except MmgtuneError as error:
+        if not resume and not (isinstance(error, OutputError) and journal.noted):  # it would end so again
+            journal.remove()
+        raise
     finally:
         _ACTIVE.reset(token)
         journal.close()

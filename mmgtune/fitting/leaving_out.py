@@ -17,7 +17,7 @@ from ..displayed import Displayed
 from ..documents import finite, finite_values, write_json
 from ..errors import OptionError, Problem, must_be_a
 from ..evaluation import TrialRecord, evaluate
-from ..files import kept_in, path_of, refuse_existing
+from ..files import all_or_none, kept_in, path_of, refuse_existing
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..inputs import INPUTS
@@ -262,6 +262,7 @@ def leave_out(
         return _leave_out(profile, trials, options, hooks, provenance)
 
 
+@all_or_none()
 def write_left_out(result: LeftOut, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write the result, and the motions of the trials left out.  Returns its document.
 

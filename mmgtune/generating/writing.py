@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, among, must_be_a
-from ..files import path_of, refuse_existing, write_text
+from ..files import all_or_none, path_of, refuse_existing, write_text
 from ..inputs import INPUTS
 from ..model import Model
 from ..options import MakeOptions
@@ -70,6 +70,7 @@ class Made:
         }
 
 
+@all_or_none()
 def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions(), *, overwrite: bool = False) -> Made:
     """Make sets of trials of a ship in ``out``, each in a folder of its own with the truth in ``truth``.
 

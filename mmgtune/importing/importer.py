@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..documents import write_json
 from ..errors import LogError, Problem, kind_of, parts_of
-from ..files import hold_flag, path_of, refuse_existing, refuse_file, true_path
+from ..files import all_or_none, hold_flag, path_of, refuse_existing, refuse_file, true_path
 from ..phrases import counted
 from ..resources import must_be_name
 from ..trial import Trial, write_trial
@@ -160,10 +160,11 @@ def import_logs(
         return Imported(tuple(trials), tuple(quality), (), log_map.name)
     files = [out / f"{trial.id}.parquet" for trial in trials]
     refuse_existing(files, overwrite)
-    for trial, path in zip(trials, files, strict=True):
-        write_trial(trial, path, overwrite)
     imported = Imported(tuple(trials), tuple(quality), tuple(files), log_map.name)
-    write_json(imported.to_dict(), out / REPORT, overwrite)
+    with all_or_none():
+        for trial, path in zip(trials, files, strict=True):
+            write_trial(trial, path, overwrite)
+        write_json(imported.to_dict(), out / REPORT, overwrite)
     return imported
 
 

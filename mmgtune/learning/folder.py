@@ -10,7 +10,7 @@ from typing import Any
 from ..arrays import FloatArray
 from ..documents import finite_values, write_json
 from ..errors import must_be_a
-from ..files import path_of, refuse_existing
+from ..files import all_or_none, path_of, refuse_existing
 from ..motions import simulate_trials
 from ..networks import (
     Ensemble,
@@ -196,6 +196,7 @@ def _short(value: float, name: str) -> float:
     return round(value, 2) if name.endswith("_m") else float(f"{value:.5g}")
 
 
+@all_or_none()
 def write_learned(
     result: Learned | LearnedHybrid | LearnedEnsemble | LearnedMixture, folder: Path | str, *, overwrite: bool = False
 ) -> dict[str, Any]:

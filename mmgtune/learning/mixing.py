@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from .. import limits
 from ..documents import finite, write_json
 from ..errors import OptionError, Problem, reason
-from ..files import path_of, refuse_existing
+from ..files import all_or_none, path_of, refuse_existing
 from ..given import TrialsGiven, trials_of
 from ..networks import (
     HybridPredictor,
@@ -104,6 +104,7 @@ class LearnedMixture:
             "provenance": self.provenance,
         }
 
+    @all_or_none()
     def write(self, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
         """Write the model and the record into a run folder.  Returns the record.
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..documents import write_json
 from ..errors import must_be_a
-from ..files import path_of
+from ..files import all_or_none, path_of
 from ..fitting.journal import finished
 from ..particles import FILE, save_particles
 from .run import JOURNAL, Posterior
@@ -16,6 +16,7 @@ RESULT = "posterior.json"
 FILES = (FILE, RESULT)
 
 
+@all_or_none()
 def write_posterior(result: Posterior, folder: Path | str, overwrite: bool = False) -> dict[str, Any]:
     """Write particles and their document; the latter last, so that its presence means the rest is there.
 

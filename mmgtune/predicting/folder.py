@@ -10,7 +10,7 @@ import numpy as np
 from ..backends import STATES
 from ..documents import write_json
 from ..errors import must_be_a
-from ..files import path_of, refuse_existing
+from ..files import all_or_none, path_of, refuse_existing
 from ..tables import write_table
 from .result import Predicted
 
@@ -24,6 +24,7 @@ DRAWN, POINTS = 40, 150
 """Particles whose tracks are kept to be drawn, and places of each."""
 
 
+@all_or_none()
 def write_prediction(
     result: Predicted,
     folder: Path | str,

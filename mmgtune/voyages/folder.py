@@ -10,7 +10,7 @@ import numpy as np
 from ..backends import STATES
 from ..documents import write_json
 from ..errors import must_be_a
-from ..files import path_of, refuse_existing
+from ..files import all_or_none, path_of, refuse_existing
 from ..fitting.journal import finished
 from ..tables import write_table
 from ..trial.parquet import GROUP_ROWS
@@ -19,6 +19,7 @@ from .result import VoyageValidation
 RESULT = "voyages.json"
 
 
+@all_or_none()
 def write_voyages(result: VoyageValidation, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write the windows, those that are drawn and, last, the result.  Returns its document.
 

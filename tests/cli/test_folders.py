@@ -4,6 +4,7 @@ import fcntl
 import multiprocessing
 import os
 import re
+import resource
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -13,13 +14,13 @@ import pytest
 import mmgtune
 from mmgtune.errors import OutputError, ProfileError
 from mmgtune.estimating import read_particulars
-from mmgtune.files import atomic, remove_left_overs, write_text
+from mmgtune.files import all_or_none, atomic, remove_left_overs, write_text
 from mmgtune.fitting.sweeping import folder_name
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.resources import folder
 from mmgtune.run_folders import MARKS, claimed, prepare
 from mmgtune.trial import load_trials, write_trial
-from tests.command import run, typed
+from tests.command import run, start, typed
 
 
 def killed_while_writing(path):
@@ -279,3 +280,35 @@ def test_a_name_that_no_folder_can_have_is_refused_with_a_way_out(tmp_path):
         assert "why: File name too long" in ended.err
         assert "fix: write a shorter name" in ended.err
     assert not list(tmp_path.iterdir())
+
+
+def test_where_one_file_of_several_cannot_be_written_none_stays(tmp_path):
+    old = write_text(tmp_path / "old.txt", "before")
+    (tmp_path / "folder").mkdir()
+
+    @all_or_none()
+    def write():
+        write_text(old, "after")
+        write_text(tmp_path / "new.txt", "new")
+        write_text(tmp_path / "folder", "a folder is there")
+
+    with pytest.raises(OutputError):
+        write()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "old.txt"]
+
+
+def test_a_result_too_large_for_the_place_leaves_what_resume_needs(tmp_path):
+    """Of a fit profile.toml and history.parquet stayed, and no fit.json."""
+    fit = ("fit", "--method", "least-squares", "--starts", "1", "--targets", "hull.Y_v", "--no-report", "--out", "run")
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, limit[1]))  # commands take it over
+    try:
+        process = start(*fit, cwd=tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    _, said = process.communicate(timeout=300)
+    assert process.returncode == 2, said
+    assert "cannot write the output" in said
+    assert [path.name for path in (tmp_path / "run").iterdir()] == ["journal.jsonl"]
+    ended = run(*fit, "--resume", cwd=tmp_path)
+    assert ended.code == 0, ended.err

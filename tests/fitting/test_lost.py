@@ -38,11 +38,12 @@ def wild():
     ],
     ids=["least squares", "initial states estimated", "huber", "CMA-ES"],
 )
-def test_a_fit_of_a_ship_that_runs_away_says_where(wild, options):
+def test_a_fit_of_a_ship_that_runs_away_says_where(wild, options, tmp_path):
     with pytest.raises(
         ProfileError, match="runs away on turn_m20, turn_p35, turn_m40, wherever the targets are"
     ) as error:
-        fit(wild, "suzaku", options)
+        fit(wild, "suzaku", options, folder=tmp_path)
+    assert not list(tmp_path.iterdir())
     (problem,) = error.value.problems
     assert "sign or a power of ten" in problem.why
     assert "mmgtune validate" in problem.fix
@@ -76,9 +77,11 @@ def test_so_does_a_diagnosis(wild):
         diagnose(wild, "suzaku", DiagnoseOptions(targets=TARGETS))
 
 
-def test_so_do_particles(wild):
+def test_so_do_particles(wild, tmp_path):
+    turn = replace(load_trials("suzaku"), tune=("turn_p35",))
     with pytest.raises(ProfileError, match="with any coefficients that are likely"):
-        posterior(wild, [load_trials("suzaku").trials["turn_p35"]], PosteriorOptions(particles=20))
+        posterior(wild, turn, PosteriorOptions(particles=20), folder=tmp_path)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.long
