@@ -25,6 +25,12 @@ from .schema import SOURCES
 SCHEMA = 1
 MANOEUVRES = ("turning", "zigzag", "stopping")
 KEYS = ("id", "ship", "manoeuvre", "order", "approach_speed", "n", "source", "note", "indices")
+LEAST, MOST = 1e-6, 1e6
+"""Sizes in SI, or ship lengths, beyond which nothing that is stated can be, angles apart, nor its tolerance."""
+
+SHARPEST = 1e-6
+"""Share of a value below which a tolerance is none: residuals over it would be beyond all numbers."""
+
 LENGTH = re.compile(r"^\s*([-+0-9.eE]+)\s*L\s*$")
 """A length in ship lengths between perpendiculars: "3.01 L"."""
 
@@ -359,7 +365,8 @@ class _Table:
             return None
         number, in_lengths = value
         angle = index.unit == "rad"
-        if not (number > 0.0 or (angle and number == 0.0)) or (angle and number > 180.0 * DEG) or number > 1e6:
+        least, most = (0.0, 180.0 * DEG) if angle else (LEAST, MOST)
+        if not least <= number <= most:
             self.wrong(f"{name} is {brief(entry['value'])}", name, "no ship does that", table=where)
             return None
         if "tolerance" not in entry:
@@ -371,9 +378,15 @@ class _Table:
             fix = "give both in L, or both in m"
             self.wrong(f"{name}: value and tolerance are in different units", name, fix=fix, table=where)
             return None
-        if not 0.0 < tolerance[0] <= 1e6:
+        least = max(LEAST, SHARPEST * number)
+        if not least <= tolerance[0] <= MOST:
             what = f"tolerance of {name} is {brief(entry['tolerance'])}"
-            self.wrong(what, name, "it is one standard deviation", "give one above 0", table=where)
+            unit = "L" if in_lengths else index.unit.replace("-", "")
+            fix = (
+                f"give one of {2.0 * least:.1g} {unit}".rstrip() + " or more, as large as trials and readings differ by"
+            )
+            why = "it is one standard deviation, and nothing at sea is known to a millionth"
+            self.wrong(what, name, why if 0.0 < tolerance[0] < least else "it is one standard deviation", fix, where)
             return None
         return Stated(number, tolerance[0], in_lengths)
 
