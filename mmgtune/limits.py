@@ -72,6 +72,7 @@ GRID_SAMPLES = Limit(1_000_000, "samples", "a trial", "give a longer step, or cu
 GRID_PER_ROW = 200
 """Samples that a row of a log may become, beyond GRID_FREE of all: short steps add none that were measured."""
 GRID_FREE = 20_000
+RUN_STEPS = Limit(1_000_000, "steps", "a run", "cut the trial where its time jumps, or end what is ordered earlier")
 
 TRIAL_SAMPLES = Limit(2_000_000, "samples", "a trial", "cut it into several, or give fewer samples a second")
 TRIAL_VALUES = Limit(40_000_000, "values", "a trial", "leave out columns that nothing uses, or cut it into several")
@@ -85,6 +86,15 @@ FOOTER_VALUES = Limit(100_000, "column chunks", "a Parquet file", "write it with
 ROWS_PER_BYTE = 8
 """Rows that a byte of a Parquet file may stand for beyond FREE_ROWS: measured rows do not compress further."""
 FREE_ROWS = 1_000_000
+
+
+def too_fine(asked: float, rows: int, step: float, where: str, fix: str = GRID_SAMPLES.fix) -> Problem | None:
+    """What to say where more samples, one a ``step`` [s], would be made of so many rows than may be, else None."""
+    most = min(GRID_SAMPLES.most, GRID_FREE + GRID_PER_ROW * rows)
+    if asked < most:
+        return None
+    what = f"{asked:.4g} samples would be made of {rows} rows, with a step of {step:.4g} s"
+    return Problem(what, where, f"the limit is {most} samples", fix)
 
 
 def as_float(number: Any) -> float:

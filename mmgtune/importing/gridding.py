@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray, runs_of_true
 from ..errors import LogError, OptionError, Problem, brief
-from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES, as_float
+from ..limits import as_float, too_fine
 from ..phrases import listed
 from .mapping import LogMap
 from .quantities import MEASURED, meaning
@@ -86,11 +86,8 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
         raise LogError(Problem(f"fewer than {FEWEST} samples to make a trial of", str(record.path), why))
     first = float(lead.t[np.searchsorted(lead.t, begins - 1e-9)])
     rows = max(len(one.t) for one in series.values())
-    most = min(GRID_SAMPLES.most, GRID_FREE + GRID_PER_ROW * rows)
-    asked = (ends - first) / chosen
-    if not asked < most:
-        what = f"{asked:.4g} samples would be made of {rows} rows, with a step of {chosen:.4g} s"
-        raise LogError(Problem(what, str(record.path), f"the limit is {most} samples", GRID_SAMPLES.fix))
+    if problem := too_fine((ends - first) / chosen, rows, chosen, str(record.path)):
+        raise LogError(problem)
     count = int(np.floor((ends - first) / chosen + 1e-6)) + 1
     t: FloatArray = first + chosen * np.arange(count, dtype=np.float64)
     # A log that is uniform already keeps its own stamps, to the last bit.

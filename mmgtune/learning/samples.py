@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, TrialError
+from ..limits import too_fine
 from ..networks.marching import WIND
 from ..physics.quantities import HELD, Surroundings
 from ..trial import Trial, surroundings
@@ -70,11 +71,13 @@ def samples_of(trials: Sequence[Trial], inputs: Sequence[str], step: float, drau
     """Trials on a common step [s], interpolated linearly.
 
     draught  of the ship [m], as for ``surroundings``
-    Raises TrialError for a trial without one of the inputs, OptionError where nothing can be learned from them.
+    Raises TrialError for a trial without one of the inputs, or too long for so short a step, OptionError where nothing
+    can be learned from them.
     """
     states, controls, beside = [], [], []
     held = np.array([name in HELD for name in Surroundings._fields])
     first = [0]
+    hold_grids(trials, step)
     for trial in trials:
         grid = trial.t[0] + step * np.arange(int(trial.duration / step + 1e-6) + 1)
         states.append(np.column_stack([_measured(grid, trial.t, column, step) for column in trial.motion.T]))
@@ -104,6 +107,16 @@ def samples_of(trials: Sequence[Trial], inputs: Sequence[str], step: float, drau
             )
         )
     return found
+
+
+def hold_grids(trials: Sequence[Trial], step: float) -> None:
+    """Raises TrialError for trials of which far more samples would be made than they have, as by a time that jumps."""
+    fix = "cut the trial where its time jumps, or give a longer step"
+    found = (
+        too_fine(trial.duration / step, trial.n_samples, step, str(trial.path or trial.id), fix) for trial in trials
+    )
+    if problems := [problem for problem in found if problem]:
+        raise TrialError(*problems)
 
 
 def own_step(trials: Sequence[Trial]) -> float:

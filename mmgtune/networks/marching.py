@@ -10,6 +10,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..backends.cases import SPEED_LIMIT
+from ..errors import TrialError
+from ..limits import RUN_STEPS
 from ..physics.quantities import HELD, UNKNOWN, Surroundings
 from ..predictor import Prediction, Run
 
@@ -33,9 +35,12 @@ def driven(cases: Cases, h: float) -> tuple[FloatArray, FloatArray]:
     """Inputs (n_cases, n_steps, n_inputs) and surroundings (n_cases, n_steps, n_surroundings) at steps of h [s].
 
     They are interpolated linearly but for those that are ``HELD``.  Where no wind was measured the air is still.
+    Raises TrialError for a time that takes more steps than a run may have.
     """
     span = cases.t - cases.t[:, :1]
-    n_steps = max(1, math.ceil(float(span.max(initial=0.0)) / h - 1e-9))
+    longest = float(span.max(initial=0.0))
+    RUN_STEPS.hold(longest / h, f"{longest:.6g} s in steps of {h:g} s", TrialError)
+    n_steps = max(1, math.ceil(longest / h - 1e-9))
     return (
         _on_grid(span, cases.controls, cases.n_samples, h, n_steps),
         _on_grid(span, cases.around, cases.n_samples, h, n_steps, [name in HELD for name in Surroundings._fields]),

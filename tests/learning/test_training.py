@@ -13,12 +13,13 @@ import pytest
 pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[learn]")
 
 from mmgtune.cli.learn import summary
-from mmgtune.errors import OptionError
+from mmgtune.errors import OptionError, TrialError
 from mmgtune.learning import Hooks, learn_hybrid, learn_rnn, write_learned
 from mmgtune.learning import run as runs
 from mmgtune.learning.aims import RecurrentAim
 from mmgtune.learning.keeping import Kept, named
 from mmgtune.learning.planning import plan_rnn
+from mmgtune.learning.samples import samples_of
 from mmgtune.learning.starting import first_weights, scales_of
 from mmgtune.learning.training import Plan, Trainer
 from mmgtune.networks import NetworkPredictor, load_network
@@ -389,3 +390,12 @@ def test_what_is_left_behind_is_json_and_a_predictor(trained, tmp_path):
     assert document["provenance"]["trials"]["sources"] == ["generated"]
     result = validate([str(tmp_path / "model.safetensors"), "suzaku"], "suzaku")
     assert [one.predictor.name for one in result.profiles] == ["suzaku type 1", "suzaku"]
+
+
+def test_a_time_that_jumps_is_no_reason_to_fill_the_machine():
+    trial = load_trials("suzaku").trials["turn_p10"]
+    jumping = replace(trial, t=np.where(trial.t > 100.0, trial.t + 1e9, trial.t))
+    with pytest.raises(TrialError, match="samples would be made of") as error:
+        samples_of([trial, jumping], ("n", "delta"), 1.0)
+    (problem,) = error.value.problems
+    assert "cut the trial where its time jumps" in problem.fix

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import pad
+from mmgtune.errors import TrialError
 from mmgtune.networks import NetworkPredictor
 from mmgtune.networks.model import Network
 from mmgtune.networks.recurrent import Weights
@@ -69,6 +70,15 @@ def test_it_marches_in_its_own_step_whatever_the_samples_are():
     each = predict(one, (t, controls, initial, around)).states[0, 0]
     tenth = predict(one, (t[::10], controls[::10], initial, around[::10])).states[0, 0]
     np.testing.assert_allclose(tenth, each[::10], rtol=1e-10, atol=1e-12)
+
+
+def test_a_time_that_jumps_is_refused():
+    """A thousand million steps were marched through."""
+    t, *rest = a_case()
+    t = np.where(np.arange(len(t)) > 20, t + 1e9, t)
+    with pytest.raises(TrialError, match="too many") as error:
+        predict(NetworkPredictor(network()), (t, *rest))
+    assert "cut the trial where its time jumps" in error.value.problems[0].fix
 
 
 def test_turned_and_shifted_it_moves_the_same():
