@@ -230,6 +230,7 @@ class _Helm:
             towards = (self.side[lanes] * np.sign(orders.rudder[lanes]))[:, None] * psi
             check = orders.check[lanes, None]
             passing = (towards[:, :-1] < check) & (towards[:, 1:] >= check)
+            passing &= np.isfinite(towards[:, 1:])  # a lane that is lost passes nothing, not even a check at infinity
             passing &= (samples[:-1] >= self.since[lanes, None]) & (samples[1:] <= length[:, None])
         end = np.where(done.any(axis=1), np.argmax(done, axis=1), np.where(length == self.longest[lanes], length, -1))
         k = np.argmax(passing, axis=1)

@@ -12,7 +12,7 @@ from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.physics.quantities import UNKNOWN, State
 from mmgtune.profile import Actuator, load_profile, with_effects
-from mmgtune.steering import APPROACH, PATIENCE, STEP, Orders, steer
+from mmgtune.steering import APPROACH, PATIENCE, STEP, ModelLanes, Orders, steer, steer_lanes
 from mmgtune.units import DEG
 
 TURN, TWENTY, TEN = 35.0 * DEG, 20.0 * DEG, 10.0 * DEG
@@ -240,3 +240,23 @@ def test_a_ship_stops_with_her_propeller_astern(esso_osaka):
     harder, record = march(esso_osaka, [0.0], [np.inf], until=np.inf, astern=-1.5 * approach.n)
     assert stopping(record)["track_reach"][0] < found["track_reach"][0]
     assert harder.sound.all()
+
+
+@pytest.mark.parametrize("check", [np.inf, TWENTY])
+def test_a_manoeuvre_ends_where_every_lane_is_lost(kvlcc2, check):
+    """A heading that is infinite passed the check heading of turns, which is at infinity, a thousand times over."""
+
+    class Lost(ModelLanes):
+        marches = 0
+
+        def march(self, lanes, cases):
+            self.marches += 1
+            found = super().march(lanes, cases)
+            found[:, 12:] = np.inf
+            return found
+
+    ships = Lost(kvlcc2, np.repeat(kvlcc2.matrix(), 2, axis=1), get_backend("numpy"))
+    steered = steer_lanes(ships, orders(kvlcc2, [TURN, -TURN], [check, check], legs=1000))
+    assert ships.marches == 1
+    assert not steered.sound.any()
+    assert steered.end.tolist() == [12, 12]
