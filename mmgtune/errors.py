@@ -124,6 +124,10 @@ def brief(value: object) -> str:
         def repr_int(self, x: int, level: int) -> str:
             return repr(x) if abs(x) < 10**40 else f"a number of {int((x.bit_length() - 1) * 0.30103) + 1} digits"
 
+        def repr1(self, x: object, level: int) -> str:
+            is_time = type(x).__module__ == "datetime"  # as TOML has it
+            return str(x) if is_time else super().repr1(x, level)
+
     short = Short()
     short.maxlevel, short.maxstring, short.maxother = 3, 80, 80
     short.maxlist = short.maxdict = short.maxtuple = 8

@@ -136,9 +136,19 @@ class TomlReader:
         return None
 
     def quantities(
-        self, name: str, key: str, written: Any, unit: str, infinite: bool = False
+        self,
+        name: str,
+        key: str,
+        written: Any,
+        unit: str,
+        infinite: bool = False,
+        low: float | None = None,
+        high: float | None = None,
     ) -> tuple[float, ...] | None:
-        """The numbers of text with a unit in ``unit``, or of a bare number where it is dimensionless; else None."""
+        """The numbers of text with a unit in ``unit``, or of a bare number where it is dimensionless; else None.
+
+        low, high  limits (exclusive) that the number has: an example lies between them
+        """
         shown = named(name, key)
         if isinstance(written, str):
             try:
@@ -146,11 +156,11 @@ class TomlReader:
             except units.Unreadable as error:
                 self.problem(f"'{shown}': {error}", name, key, fix=error.fix)
         elif not isinstance(written, (int, float)) or isinstance(written, bool):
-            fix = f"write {key} = {units.example(unit)}"
+            fix = f"write {key} = {units.example_in_toml(unit, low, high)}"
             self.problem(f"'{shown}' is {brief(written)}, not a number", name, key, fix=fix)
         elif not infinite and isinstance(written, float) and not math.isfinite(written):
-            fix = f"write {key} = {units.example(unit)}" if unit in units.DIMENSIONLESS else ""
-            fix = fix or f'write a number with its unit: {key} = "{units.example(unit)}"'
+            with_unit = "" if unit in units.DIMENSIONLESS else "a number with its unit: "
+            fix = f"write {with_unit}{key} = {units.example_in_toml(unit, low, high)}"
             self.problem(f"'{shown}' is {written}", name, key, "only finite numbers can be simulated", fix)
         elif unit not in units.DIMENSIONLESS:
             why, fix = "a number does not say what it is in", f'write {key} = "{brief(written)} {unit}"'

@@ -197,9 +197,23 @@ def factors(unit: str) -> dict[str, float]:
     return dict(_FACTORS.get(unit, {unit: 1.0}))
 
 
+EXAMPLE = 1.5
+"""The number of examples."""
+
+
 def example(unit: str) -> str:
     """How a quantity of this unit is written."""
-    return "1.5" if unit in DIMENSIONLESS else f"1.5 {unit}"
+    return f"{EXAMPLE:g}" if unit in DIMENSIONLESS else f"{EXAMPLE:g} {unit}"
+
+
+def example_in_toml(unit: str, low: float | None = None, high: float | None = None) -> str:
+    """The same as TOML has it, a number between limits (exclusive) that there may be."""
+    number = EXAMPLE
+    if (low is not None and number <= low) or (high is not None and number >= high):
+        below = low if low is not None else min(0.0, 2.0 * (high or 0.0)) - 1.0
+        above = high if high is not None else max(0.0, 2.0 * (low or 0.0)) + 1.0
+        number = 0.5 * (below + above)
+    return f"{number:.3g}" if unit in DIMENSIONLESS else f'"{number:.3g} {unit}"'
 
 
 def shown(value: float, unit: str) -> str:

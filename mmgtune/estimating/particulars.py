@@ -174,7 +174,7 @@ class _Reader(TomlReader):
         return value
 
     def number(self, section: str, key: str, known: Field, written: Any) -> float | None:
-        numbers = self.quantities(section, key, written, known.unit)
+        numbers = self.quantities(section, key, written, known.unit, low=known.low, high=known.high)
         if numbers is None:
             return None
         if len(numbers) != 1:

@@ -6,6 +6,7 @@ import math
 
 from ..components import Field
 from ..effects import Parameter
+from ..units import DIMENSIONLESS
 
 ALMOST_ZERO = 1e-12
 """Limits that are no farther from 0 let 0 itself in."""
@@ -34,7 +35,7 @@ def may_be_infinite(field: Field) -> bool:
 
 def _limits(field: Field) -> str:
     """What a coefficient may be, in words."""
-    low, high, unit = field.low, field.high, f" {field.unit}" if field.unit else ""
+    low, high, unit = field.low, field.high, "" if field.unit in DIMENSIONLESS else f" {field.unit}"
     words = []
     if low is not None:
         words.append("0 or more" if -ALMOST_ZERO <= low < 0.0 else f"above {low:g}{unit}")

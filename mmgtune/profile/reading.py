@@ -344,7 +344,7 @@ class _Reader(TomlReader):
                 return (field.choices[written],)
             self.problem(f"'{name}' is {brief(written)}", kind, symbol, fix=f"one of: {', '.join(field.choices)}")
             return None
-        numbers = self.quantities(kind, symbol, written, field.unit, infinite=may_be_infinite(field))
+        numbers = self.quantities(kind, symbol, written, field.unit, may_be_infinite(field), field.low, field.high)
         if numbers is None:
             return None
         point = units.with_point(written) if isinstance(written, str) and not field.table else None
@@ -375,9 +375,8 @@ class _Reader(TomlReader):
         values: dict[str, float] = {}
         for key, field in fields.items():
             if key not in table:
-                self.problem(
-                    f"'{section}.{key}' is missing", section, fix=f'write {key} = "{units.example(field.unit)}"'
-                )
+                example = units.example_in_toml(field.unit, field.low, field.high)
+                self.problem(f"'{section}.{key}' is missing", section, fix=f"write {key} = {example}")
                 continue
             coefficient = self.coefficient(section, key, field, table[key], str(table.get("source", "")))
             if coefficient is not None and not isinstance(coefficient.value, tuple):

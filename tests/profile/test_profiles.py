@@ -135,6 +135,36 @@ def a_run(folder, *more):
     return folder
 
 
+def problems_of(text):
+    try:
+        parse_profile(text)
+    except ProfileError as error:
+        return error.problems
+    return ()
+
+
+@pytest.mark.parametrize("name", ["suzaku", "kvlcc2"])
+def test_the_fix_of_what_is_no_number_can_be_copied(name):
+    """It was no TOML where there is a unit, and beyond the limits of what is small or negative."""
+    lines = load_profile(name).text.splitlines()
+    copied = 0
+    for k, line in enumerate(lines):
+        key = line.partition(" = ")[0]
+        for problem in problems_of("\n".join([*lines[:k], f"{key} = []", *lines[k + 1 :]])):
+            if "not a number" in problem.what:
+                written = "\n".join([*lines[:k], problem.fix.removeprefix("write "), *lines[k + 1 :]])
+                said = " ".join(map(str, problems_of(written)))
+                assert not any(words in said for words in ("TOML", "impossible", "has no unit")), (line, said)
+                copied += 1
+    assert copied > 30
+
+
+def test_a_limit_without_unit_is_said_without_one():
+    text = load_profile("suzaku").text.replace("x_R_ = { value = -0.5", "x_R_ = { value = -7.0")
+    (problem,) = problems_of(text)
+    assert problem.why.endswith("must be above -1 and below 1")
+
+
 def test_a_run_folder_is_taken_for_the_profile_in_it(tmp_path):
     run = a_run(tmp_path / "diagnosed", "calm.toml", "diagnosis.json", "particles.parquet")
     assert load_profile(run).path == run / "profile.toml"
