@@ -96,6 +96,9 @@ class Stamps:
             return "iso"
         if any(is_date(one) for one in first.iloc[:20]):
             return "date"
+        told = len(first) and in_thousands(first, self.decimal) is not None
+        if told and np.isnan(numbers_in(first, self.decimal, self.thousands)).all():
+            self._unreadable(first, rows, "as numbers, dates or times of day")
         return "number"
 
     def _dated(self, text: Any, rows: IntArray) -> FloatArray:
@@ -140,13 +143,18 @@ class Stamps:
         shown = text.iloc[0] if len(text) else ""
         fix = 'say format = "number", "iso", "clock", "hhmmss", "mm:ss", "dmy", "mdy" or "ymd" in [time]'
         place = f"{self.path}, line {rows[0] if len(rows) else 0}"
-        raise LogError(Problem(f"time cannot be read {how}", place, f"the first stamp is '{shown}'", fix))
+        why = f"the first stamp is '{shown}'; {READABLE} can be read"
+        raise LogError(Problem(f"time cannot be read {how}", place, why, fix))
 
 
 def falls(t: FloatArray) -> bool:
     """Whether stamps (n_rows,) stand newest first."""
     steps = np.diff(t[np.isfinite(t)])
     return len(steps) > 2 and float(np.mean(steps <= 0.0)) > NEWEST_FIRST and float(np.median(steps)) < 0.0
+
+
+READABLE = "seconds, 2024-05-14T02:15:00, 14.05.2024 02:15:00, 02:15:00, 021500"
+"""Stamps of each form."""
 
 
 @dataclass

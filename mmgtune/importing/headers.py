@@ -33,10 +33,13 @@ def find_column(wanted: str | int, names: Sequence[str]) -> int | None:
     """Position of a column by number (from 1), by name, or by its name without unit or case; None if not there."""
     if isinstance(wanted, int):
         return wanted - 1 if wanted <= len(names) else None
+    found = columns_called(wanted, names)
+    return found[0] if len(found) == 1 else None
+
+
+def columns_called(wanted: str, names: Sequence[str]) -> list[int]:
+    """Positions of all columns of a name, or of that name without unit or case where none is exactly so."""
     for same in (str.strip, bare, lambda name: bare(name).lower()):
-        found = [k for k, name in enumerate(names) if same(name) == same(wanted)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            return None
-    return None
+        if found := [k for k, name in enumerate(names) if same(name) == same(wanted)]:
+            return found
+    return []

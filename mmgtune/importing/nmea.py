@@ -21,7 +21,7 @@ from ..units import DEG, KNOT, factors
 from .clock import put_right
 from .mapping import LogMap, TimeSource
 from .periods import DAY
-from .quantities import AGAINST, meaning, quantity_of
+from .quantities import AGAINST, FASTEST, meaning, quantity_of
 from .record import Record, Series, unwrapped
 from .table import MOST_ROWS
 
@@ -305,6 +305,7 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
             values = values * source.scale * (-1.0 if source.positive in AGAINST else 1.0) + source.offset
         quantity = quantity_of(name)
         beyond = impossible(values, quantity.unit if quantity is not None else "m/s")
+        beyond |= np.abs(values) > (quantity.most if quantity is not None else FASTEST)
         if beyond.any():
             notes.append(f"{beyond.sum()} values of {meaning(name) or 'velocity'} are impossible; taken as gaps")
             values = np.where(beyond, np.nan, values)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from ..inputs import INPUTS, Role
@@ -21,6 +22,7 @@ class Quantity:
     origin    whether a map may say which way its zero points
     points    "from" or "to" as the trial format counts a direction something comes from or goes to, where a map must
               say which; "" for anything else
+    most      size [unit] beyond which a number is damage
     """
 
     unit: str
@@ -28,7 +30,11 @@ class Quantity:
     angle: bool = False
     origin: bool = False
     points: str = ""
+    most: float = math.inf
 
+
+FASTEST = 100.0
+"""Speed of a ship [m/s] beyond which a number in a log is none, but a mark for no value or damage."""
 
 _SIDES = ("starboard", "port")
 _TURNS = ("clockwise", "counterclockwise")
@@ -50,9 +56,9 @@ QUANTITIES: dict[str, Quantity] = {
     "latitude": Quantity("deg", ("north", "south")),
     "longitude": Quantity("deg", ("east", "west"), angle=True),
     "psi": Quantity("rad", _TURNS, angle=True, origin=True),
-    "u": Quantity("m/s", ("forward", "aft", "north", "south")),
-    "v": Quantity("m/s", (*_SIDES, "east", "west")),
-    "sog": Quantity("m/s"),
+    "u": Quantity("m/s", ("forward", "aft", "north", "south"), most=FASTEST),
+    "v": Quantity("m/s", (*_SIDES, "east", "west"), most=FASTEST),
+    "sog": Quantity("m/s", most=FASTEST),
     "cog": Quantity("rad", _TURNS, angle=True, origin=True),
     "r": Quantity("rad/s", (*_SIDES, *_TURNS)),
     **{name: Quantity(one.unit, POSITIVE[one.role]) for name, one in INPUTS.items()},

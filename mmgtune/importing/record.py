@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -241,11 +242,12 @@ def possible(name: str, values: FloatArray, source: Source, unit: str, table: Ta
     quantity = known_quantity(name)
     with np.errstate(over="ignore"):
         size = values * (units.factors(quantity.unit)[unit] * source.scale) + source.offset
-    beyond = impossible(size, quantity.unit)
+    beyond = impossible(size, quantity.unit) | (np.abs(size) > quantity.most)
     if not beyond.any():
         return values
     said = f"{beyond.sum()} of {len(values)} values of '{table.headers[name]}' are impossible for {meaning(name)}"
-    largest = f"up to {np.abs(size[beyond]).max():.3g} {quantity.unit}"
+    most = float(np.abs(size[beyond]).max())
+    largest = f"up to {most:.3g} {quantity.unit}" if math.isfinite(most) else "more than any number"
     if beyond.sum() > 0.5 * np.isfinite(values).sum():
         fix = "check unit, scale and offset of the column in the map"
         raise LogError(Problem(said, f"{table.path}, column '{table.headers[name]}'", largest, fix))

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..errors import LogError, Problem, closest
+from ..phrases import listed
 from .clock import Stamps
-from .headers import find_column
+from .headers import columns_called, find_column
 from .mapping import LogMap
 from .quantities import meaning
 from .table import TIME, Cells, Collector, Table
@@ -83,6 +84,10 @@ def columns_named(log_map: LogMap, names: Sequence[str], where: str) -> Wanted:
             holds = f"{WORDS.get(part, part)} of {holds}" if part else holds
             if isinstance(column, int):
                 what, fix = f"the log has no column {column}", f"it has {len(names)} columns"
+            elif len(same := columns_called(column, names)) > 1:
+                shown = listed([str(k + 1) for k in same])
+                what = f"column '{column}' is there {'twice' if len(same) == 2 else f'{len(same)} times'}"
+                what, fix = f"{what}: columns {shown}", f"give its number in place of its name, such as {same[0] + 1}"
             else:
                 what, fix = f"column '{column}' is missing from the log", closest(column, names)
             problems.append(Problem(what, where, f"the map says it holds {holds}", fix))
