@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from .. import limits
 from ..documents import finite, write_json
-from ..errors import OptionError, Problem, reason
+from ..errors import OptionError, Problem, brief, kind_of, reason
 from ..files import all_or_none, path_of, refuse_existing
 from ..given import TrialsGiven, trials_of
 from ..networks import (
@@ -22,6 +22,7 @@ from ..networks import (
     named_ship,
     save_network,
 )
+from ..networks.ensemble import EnsemblePredictor
 from ..networks.hybrid import Hybrid, silent
 from ..objective import spread, varying
 from ..options.choice import must_be
@@ -136,7 +137,7 @@ def learn_mixture(
     must_be(options, MixtureOptions)
     several = networks if isinstance(networks, (list, tuple)) else [networks]
     limits.NETWORKS.hold(len(several), "NETWORK", OptionError)
-    hybrid, nets = _hybrid(named_ship(model)), tuple(_network(named_ship(one)) for one in several)
+    hybrid, nets = _hybrid(model), tuple(_network(one) for one in several)
     try:
         mixtures = [Mixture(hybrid, nets, share) for share in options.share]
     except ValueError as error:
@@ -203,21 +204,36 @@ def _tried(
     return found
 
 
-def _hybrid(given: Any) -> Hybrid:
+def _hybrid(named: Any) -> Hybrid:
+    given = named_ship(named)
     if isinstance(given, ShipProfile):
         return silent(given)
     found = given.hybrid if isinstance(given, HybridPredictor) else given
     if not isinstance(found, Hybrid):
-        raise OptionError(Problem(f"{found!r} is no model of forces"[:200], "MODEL", "", "give a profile or a hybrid"))
+        what = f"{_called(named)} is no model of forces"
+        raise OptionError(Problem(what, "MODEL", _holds(found), "give a profile or a hybrid"))
     return found
 
 
-def _network(given: Any) -> Network:
+def _network(named: Any) -> Network:
+    given = named_ship(named)
     found = given.network if isinstance(given, NetworkPredictor) else given
     if not isinstance(found, Network):
-        what = f"{found!r} is no recurrent network"[:200]
-        raise OptionError(Problem(what, "NETWORK", "", "give a model.safetensors of mmgtune learn rnn"))
+        what = f"{_called(named)} is no recurrent network"
+        raise OptionError(Problem(what, "NETWORK", _holds(found), "give a model.safetensors of mmgtune learn rnn"))
     return found
+
+
+def _called(given: Any) -> str:
+    """What somebody calls a part: its file or name, else what kind of object it is."""
+    return brief(str(given)).strip("'") if isinstance(given, (str, Path)) else kind_of(given)
+
+
+def _holds(found: Any) -> str:
+    """What a part that does not fit is, where that has a name."""
+    kinds: dict[type, str] = {ShipProfile: "a profile", Hybrid: "a hybrid", HybridPredictor: "a hybrid"}
+    kinds |= {Network: "a network", EnsemblePredictor: "an ensemble", MixturePredictor: "a mixture"}
+    return next((f"it is {words}" for kind, words in kinds.items() if isinstance(found, kind)), "")
 
 
 def _tuned_on(profile: ShipProfile) -> Sequence[str]:

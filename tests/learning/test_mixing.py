@@ -230,3 +230,10 @@ def test_results_of_others_are_not_written_over(parts, tmp_path):
         mixture.write(tmp_path)
     assert (tmp_path / "model.safetensors").read_bytes() == before
     mixture.write(tmp_path, overwrite=True)
+
+
+def test_what_is_no_recurrent_network_is_called_by_its_file(tmp_path):
+    with pytest.raises(OptionError) as error:
+        learn_mixture("suzaku", "esso_osaka")
+    (problem,) = error.value.problems
+    assert (problem.what, problem.why) == ("esso_osaka is no recurrent network", "it is a profile")
