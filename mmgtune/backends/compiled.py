@@ -230,6 +230,7 @@ class Compiled:
         paired: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
+        cores()  # what the environment says of them is refused whether or not this work takes several
         n_cases, n_candidates = len(cases), 1 if paired else theta.shape[-1]
         position, share = integrator.tableau
         work = cases.steps * n_candidates * len(position) * integrator.substeps

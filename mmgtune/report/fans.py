@@ -63,7 +63,8 @@ def motions(name: str, alt: str, bands: Mapping[str, Columns], level: float, sev
     for state in SHOWN:
         channel, found = CHANNELS[state], bands[state]
         t = found["t"]
-        columns = {key: values * channel.factor for key, values in found.items() if key != "t"}
+        with np.errstate(over="ignore"):  # of numbers that somebody damaged
+            columns = {key: values * channel.factor for key, values in found.items() if key != "t"}
         marks: list[Mark] = []
         if several:
             marks.append(Area(t, columns["low"], columns["high"], "box"))
@@ -107,6 +108,9 @@ def regions(marks: Sequence[Mapping[str, float]], share: float) -> list[FloatArr
     radius = math.sqrt(-2.0 * math.log(1.0 - share))  # of a bivariate normal distribution
     turn = np.linspace(0.0, 2.0 * math.pi, 17)
     circle = radius * np.array([np.cos(turn), np.sin(turn)])
+    marks = [mark for mark in marks if all(math.isfinite(mark[name]) for name in ("t", "x", "y", "xx", "xy", "yy"))]
+    if not marks:
+        return []
     t = [mark["t"] for mark in marks]
     finer = np.interp(np.linspace(0.0, len(t) - 1.0, FINER * len(t)), range(len(t)), t)
     x, y, xx, xy, yy = (np.interp(finer, t, [mark[name] for mark in marks]) for name in ("x", "y", "xx", "xy", "yy"))

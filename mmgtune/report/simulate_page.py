@@ -95,7 +95,8 @@ def _off(record: SimulationRecord) -> tuple[float | None, float | None]:
             continue
         _, gap = distance_from(found["simulated"], found["measured"])
         if np.isfinite(gap).any():
-            places.append(float(np.sqrt(np.nanmean(gap**2))))
+            with np.errstate(over="ignore"):  # of a run that diverged
+                places.append(float(np.sqrt(np.nanmean(gap**2))))
         one, other = (motions.unwrapped(found[which]["psi"]) for which in ("simulated", "measured"))
         if one.shape == other.shape:
             error = one - other - motions.turns(one, other)

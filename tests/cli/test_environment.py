@@ -36,6 +36,8 @@ def test_cores_that_are_no_number(value, tmp_path, monkeypatch):
     few = ("--method", "least-squares", "--starts", "1", "--targets", "hull.R_0", "--no-report", "--quiet")
     fitted = run("fit", *few, cwd=tmp_path, env={"MMGTUNE_THREADS": value})
     assert (fitted.code, "MMGTUNE_THREADS is" in fitted.err) == (2, True), fitted.err
+    scored = run("validate", "suzaku", "suzaku", cwd=tmp_path, env={"MMGTUNE_THREADS": value})
+    assert (scored.code, "MMGTUNE_THREADS is" in scored.err) == (2, True), scored.err
     assert "unset it" in fitted.err
     monkeypatch.setenv("MMGTUNE_THREADS", value)
     monkeypatch.setattr(doctor, "cores", cores.__wrapped__)  # a process asks once
