@@ -61,6 +61,10 @@ def cores() -> int:
     return min(allowed, int(told))
 
 
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=cores.cache_clear)  # a child may be told another number
+
+
 def _compiling() -> ModuleType:
     """The module that compiles; it is imported where something is to run, since numba takes long to import.
 

@@ -96,8 +96,7 @@ class Stamps:
             return "iso"
         if any(is_date(one) for one in first.iloc[:20]):
             return "date"
-        told = len(first) and in_thousands(first, self.decimal) is not None
-        if told and np.isnan(numbers_in(first, self.decimal, self.thousands)).all():
+        if len(first) and first.str.contains("[^\\W\\d_]{3}").all() and np.isnan(numbers_in(first, self.decimal)).all():
             self._unreadable(first, rows, "as numbers, dates or times of day")
         return "number"
 
