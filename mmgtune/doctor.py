@@ -97,6 +97,10 @@ def _backends() -> list[Finding]:
         try:
             result = get_backend(name).run(model, model.matrix(), cases, keep_states=True)
             assert result.states is not None  # asked for
+        except OptionError as error:  # of the environment
+            what, fix = error.problems[0].what, error.problems[0].fix
+            found.append(Finding(f"back end {name}", f"fails: {what}", ok=False, fix=fix))
+            continue
         except Exception as error:  # whatever a compiler may raise is what is looked for here
             fix = "set MMGTUNE_CACHE to a folder you may write to, or use --backend numpy" if name == "compiled" else ""
             found.append(Finding(f"back end {name}", f"fails: {error!r}", ok=False, fix=fix))

@@ -12,6 +12,7 @@ from ..backends import STATES
 from ..fitting.one_sided import coverage_notes, followers
 from ..hooks import Hooks
 from ..options import DiagnoseOptions
+from ..options.scoring import WINDOW
 from ..phrases import listed
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial
@@ -39,6 +40,10 @@ from .workbench import Point, Workbench
 
 OF_ANOTHER_FORM = 1.0
 """Variance beyond noise, as a share of it, from which on what a single cause leaves says that its form is another."""
+
+
+MUCH_OPEN = 2.0
+"""Variance that inputs leave open, over that of the noise, from which windows are advised where runs are long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +139,7 @@ class Judge:
             *_too_small(bench, found),
             *_deformed(causes),
             *of_hull,
+            *_left_open(bench, left, self.options),
         )
         return Diagnosis(
             profile=self.profile,
@@ -202,6 +208,18 @@ def _first(found: Found) -> Point:
     """The re-tuned model before any correction of integration step or inputs."""
     as_given = found.held is None and found.finer_step is None
     return found.base if as_given else found.steps[0].base
+
+
+def _left_open(bench: Workbench, left: Leftover, options: DiagnoseOptions) -> list[str]:
+    """That windows would tell more of long runs whose inputs are known too seldom to follow them to their end."""
+    longest = max(trial.duration for trial in bench.trials)
+    if options.restart is not None or left.left_open < MUCH_OPEN or longest < 2.0 * WINDOW:
+        return []
+    said = (
+        "what the inputs did between samples of their log grows to many times the noise in runs as long as these: "
+        f"windows that begin again tell more, restart={WINDOW:g}"
+    )
+    return [said]
 
 
 def _too_small(bench: Workbench, found: Found) -> list[str]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
+from mmgtune.diagnose.judging import _left_open
 from mmgtune.errors import OptionError
 from mmgtune.trial import Trial
 from mmgtune.trial.set_checks import turn_away
@@ -93,3 +95,12 @@ def test_a_ship_that_swings_in_waves_is_told_first():
     assert result.verdict == "unexplained"
     assert result.sentence().startswith("In 3 of 3 trials the ship swings from beginning to end with a period of 7 s")
     assert "as in waves" in result.to_dict()["headline"]
+
+
+@pytest.mark.parametrize(("left_open", "minutes", "restart", "told"), [
+    (9.0, 30.0, None, True), (0.5, 30.0, None, False), (9.0, 2.0, None, False), (9.0, 30.0, 120.0, False),
+])  # fmt: skip
+def test_windows_are_advised_where_inputs_leave_much_open_in_long_runs(left_open, minutes, restart, told):
+    bench = SimpleNamespace(trials=[SimpleNamespace(duration=60.0 * minutes)])
+    notes = _left_open(bench, SimpleNamespace(left_open=left_open), DiagnoseOptions(restart=restart))
+    assert [note.endswith("restart=120") for note in notes] == [True] * told
