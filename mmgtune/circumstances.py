@@ -7,8 +7,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 import numpy as np
 
 from .arrays import FloatArray
+from .components.propeller import ASTERN
 from .effects import Effect
+from .inputs import INPUTS
 from .model import Model
+from .phrases import listed
 from .physics.quantities import HELD, KNOWN, Surroundings
 from .trial import Trial, measured_around, surroundings
 
@@ -19,6 +22,9 @@ WORDS = {
     "depth": ("depth", "deep water"),
 }
 """What is measured, and what there is where it is not, by names of ``quantities.KNOWN``."""
+
+OFTEN = 0.02
+"""Share of the samples of a trial with revolutions astern from which it is one with a reversed propeller."""
 
 _FIELDS = Surroundings._fields
 
@@ -31,11 +37,26 @@ def notes_on(
     values  of coefficients in place of the model's own
     free    names of coefficients that are tuned: they count as acting
     """
+    reversed_in = reversals(model, trials)
     around: dict[str, list[FloatArray]] = {}
     if acts_on_surroundings(model):
         for trial in trials:
             around.setdefault(trial.whole, []).append(surroundings(trial, model.draught))
-    return notes(model, {name: np.concatenate(parts) for name, parts in around.items()}, values, free)
+    return reversed_in + notes(model, {name: np.concatenate(parts) for name, parts in around.items()}, values, free)
+
+
+def reversals(model: Model, trials: Sequence[Trial]) -> list[str]:
+    """A sentence on trials in which a propeller turns astern that the ship's equations do not have so; else none."""
+    propeller = model.profile.sections["propeller"].component.tag if "propeller" in model.profile.sections else ""
+    turned = [name for name in model.inputs if INPUTS[name].role == "propeller"]
+    ids = [one.whole for one in trials if any(np.mean(one.inputs([name]) < 0.0) > OFTEN for name in turned)]
+    if not ids or propeller in ASTERN:
+        return []
+    told = (
+        f"the propeller turns astern in {listed(list(dict.fromkeys(ids)), 4)}, and the propeller '{propeller}' of "
+        f"'{model.profile.id}' has no revolutions astern: what is off there may be that alone"
+    )
+    return [told]
 
 
 def acts_on_surroundings(model: Model) -> bool:

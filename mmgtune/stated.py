@@ -13,6 +13,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import get_backend
+from .components.propeller import ASTERN
 from .errors import OptionError, Problem
 from .manoeuvres.on_lanes import LaneRecord, stopping, turning, zigzag
 from .model import Model
@@ -28,9 +29,6 @@ UNREACHED = 1e3
 
 LANES = 1024
 """Lanes marched at one time; bounds the memory."""
-
-ASTERN = ("reversible",)
-"""Propellers whose equations hold for revolutions astern."""
 
 NO_REVERSE = "its equations end where the propeller is reversed"
 

@@ -96,3 +96,6 @@ REVERSIBLE_PROPELLER = Component(
 )
 
 PROPELLERS = (FOUR_QUADRANT_PROPELLER, OPEN_WATER_PROPELLER, REVERSIBLE_PROPELLER)
+
+ASTERN = (REVERSIBLE_PROPELLER.tag,)
+"""Propellers whose equations hold for revolutions astern."""

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..circumstances import reversals
 from ..errors import ProfileError, must_be_a
 from ..files import kept_in
 from ..fitting.extending import with_width
@@ -151,6 +152,7 @@ def _looked_at(
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     beside = [f"{one}: it was taken in parts there, which begin where their own first samples say" for one in jumped]
+    odd += [f"{said[0].upper()}{said[1:]}." for said in reversals(bench.model, seen)]
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     contradicted = ""
     if result.verdict == "unexplained" and choice is None:
