@@ -151,6 +151,7 @@ class Contribution:
             "share_held_out": self.share if asked else None,
             "error_over_noise": dict(self.channels or {}),
             "index_changes": dict(self.indices or {}),
+            "share_of_hull": self.of_hull,
         }
 
 

@@ -143,6 +143,7 @@ class Diagnosis(Answer):
             "sentence": self.sentence(),
             "headline": saying.said(self).headline,
             "explained": saying.said(self).explained,
+            "jumped": list(self.jumped),
             "warnings": list(self.warnings),
             "coverage": self.coverage.to_dict() if self.coverage else {},
             "record": self.record.to_dict() if self.record else None,
