@@ -23,8 +23,11 @@ from .workbench import TOLERANCE, Point, Workbench
 STRONG = 1.2
 """Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
-REFITTED, TERMS_REFITTED = 9, 4
+REFITTED, TERMS_REFITTED = 11, 4
 """Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
+
+ANYHOW = 4
+"""Hypotheses of the best scores that are refitted whatever first steps promise."""
 
 LIKELY = 9
 """Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
@@ -214,7 +217,7 @@ class Refitting:
             ends = self._steps(point, named[k], those, FIRST if those.shape[1] > 1 else 1)
             self.known.begun[named[k].hypothesis.names] = ends
             chi2[k] = min(end.chi2 for end in ends)
-        kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(REFITTED // 2)}
+        kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(ANYHOW)}
         return [score for k, score in enumerate(named) if k in kept]
 
     def _well_formed(self, named: Sequence[Score], chosen: Sequence[Score]) -> list[Score]:
@@ -278,7 +281,7 @@ class Refitting:
             best = np.argsort(chi2, kind="stable")[:STARTS_BEGUN]
             led[k], left[k] = where[:, best], chi2[best[0]]
         likely = sorted(led, key=lambda k: left[k])[:LIKELY]
-        return {k: where for k, where in led.items() if k in likely or k < REFITTED // 2}
+        return {k: where for k, where in led.items() if k in likely or k < ANYHOW}
 
     def _promising(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
@@ -293,7 +296,7 @@ class Refitting:
         return {
             k: those[:, np.argsort(least[k], kind="stable")[:STARTS_BEGUN]]
             for k, those in starts.items()
-            if k in likely or k < REFITTED // 2
+            if k in likely or k < ANYHOW
         }
 
     def _fitted(self, chosen: Sequence[Score]) -> list[tuple[Score, Point]]:
