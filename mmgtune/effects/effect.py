@@ -62,6 +62,23 @@ def factor_about_one(what: str, off: float, typical: float, source: str) -> Para
     )
 
 
+def rudder_angle_from(what: str, typical: float) -> Parameter:
+    """A rudder or inflow angle [rad] from which on something happens to either side, absent at infinity.
+
+    typical  a size worth finding [deg], which shows against an angle no rudder reaches
+    """
+    return Parameter(
+        what,
+        "rad",
+        null=float("inf"),
+        low=0.0,
+        chart="reciprocal",
+        bounds=lambda _: (1.0 / (60.0 * DEG), 1.0 / (8.0 * DEG)),
+        typical=lambda _: 1.0 / (typical * DEG) - 1.0 / (60.0 * DEG),
+        bounds_source="from 8 deg to an angle no rudder reaches",
+    )
+
+
 def angle_about_zero(what: str, most: float, off: float) -> Parameter:
     """An angle [rad] by which what is shown, or stands, is off, absent at 0.
 

@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..physics.quantities import Lanes
-from ..units import DEG
-from .effect import ActuatorEffect, Parameter
+from .effect import ActuatorEffect, rudder_angle_from
 from .visited import Visited
 
 
@@ -24,9 +23,7 @@ def rudder_limit(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RudderLim
 
 def unvisited(found: Mapping[str, float], visited: Visited) -> str:
     """Rudder angles beyond that limit."""
-    if visited.largest_rudder > found["angle"]:
-        return ""
-    return f"rudder angles beyond {found['angle'] / DEG:.0f} deg (these go to {visited.largest_rudder / DEG:.0f} deg)"
+    return visited.lacking_rudder(found["angle"])
 
 
 EFFECT = ActuatorEffect(
@@ -38,16 +35,7 @@ EFFECT = ActuatorEffect(
     function=rudder_limit,
     cites=(),
     fields={
-        "angle": Parameter(
-            "angle beyond which the rudder does not go, to either side",
-            "rad",
-            null=float("inf"),
-            low=0.0,
-            chart="reciprocal",
-            bounds=lambda _: (1.0 / (60.0 * DEG), 1.0 / (8.0 * DEG)),
-            typical=lambda _: 1.0 / (28.0 * DEG) - 1.0 / (60.0 * DEG),
-            bounds_source="from 8 deg to an angle no rudder reaches",
-        ),
+        "angle": rudder_angle_from("angle beyond which the rudder does not go, to either side", 28.0),
     },
     akin=("rudder-stall", "rudder-gain"),
     variants=(("angle",),),

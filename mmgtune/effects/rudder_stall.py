@@ -8,7 +8,7 @@ import numpy as np
 from ..physics.elementary import sin, where
 from ..physics.quantities import Force, Lanes, State, Surroundings
 from ..units import DEG
-from .effect import ForceEffect, Parameter
+from .effect import ForceEffect, Parameter, rudder_angle_from
 from .visited import Visited
 
 LEAST = 15.0 * DEG
@@ -40,10 +40,7 @@ def rudder_stall(state: State, around: Surroundings, found: Any, components: Any
 
 def unvisited(found: Mapping[str, float], visited: Visited) -> str:
     """Rudder angles beyond that of the stall."""
-    needed = max(found["angle"], LEAST)
-    if visited.largest_rudder > needed:
-        return ""
-    return f"rudder angles beyond {needed / DEG:.0f} deg (these go to {visited.largest_rudder / DEG:.0f} deg)"
+    return visited.lacking_rudder(max(found["angle"], LEAST))
 
 
 EFFECT = ForceEffect(
@@ -54,16 +51,7 @@ EFFECT = ForceEffect(
     function=rudder_stall,
     cites=(),
     fields={
-        "angle": Parameter(
-            "effective inflow angle at which the rudder stalls",
-            "rad",
-            null=float("inf"),
-            low=0.0,
-            chart="reciprocal",
-            bounds=lambda _: (1.0 / (60.0 * DEG), 1.0 / (8.0 * DEG)),
-            typical=lambda _: 1.0 / (25.0 * DEG) - 1.0 / (60.0 * DEG),
-            bounds_source="from 8 deg to an angle no rudder reaches",
-        ),
+        "angle": rudder_angle_from("effective inflow angle at which the rudder stalls", 25.0),
         "slope": Parameter(
             "share of its slope that the force keeps beyond that angle; negative where it falls",
             low=-3.0,

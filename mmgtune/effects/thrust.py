@@ -21,8 +21,11 @@ def thrust(values: Mapping[str, Lanes], e: Thrust) -> dict[str, Lanes]:
 
     The slipstream that the rudder stands in changes with it; side force and moment of the propeller stay.
     """
-    of_thrust = {name: value for name, value in values.items() if name.rpartition(".")[2] in CURVE}
-    return {name: value * e.factor for name, value in of_thrust.items() if name.startswith("propeller")}
+    return {
+        name: value * e.factor
+        for name, value in values.items()
+        if name.startswith("propeller") and name.rpartition(".")[2] in CURVE
+    }
 
 
 EFFECT = CoefficientsEffect(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, robust_deviation
+from ..units import DEG
 
 MOMENT = 5.0
 """Time [s] that trials must stay beyond a value for it to count as visited."""
@@ -74,6 +75,12 @@ class Visited:
         if len(known) < FEW:
             return 0.0
         return min(robust_deviation(np.diff(known, k)) / math.sqrt(math.comb(2 * k, k)) for k in (2, 3, 4))
+
+    def lacking_rudder(self, angle: float) -> str:
+        """Rudder angles beyond one [rad], in words, where trials do not go so far; "" where they do."""
+        if self.largest_rudder > angle:
+            return ""
+        return f"rudder angles beyond {angle / DEG:.0f} deg (these go to {self.largest_rudder / DEG:.0f} deg)"
 
     @property
     def lacking_speeds(self) -> str:
