@@ -5,6 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 
+def capital(text: str) -> str:
+    """A text as a sentence begins."""
+    return text[:1].upper() + text[1:]
+
+
 def counted(amount: int, noun: str, plural: str = "") -> str:
     """A number with its noun: "1 trial", "8 trials"."""
     return f"{amount} {noun if amount == 1 else plural or noun + 's'}"

@@ -41,10 +41,6 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mmgtune")
 
 
-if hasattr(os, "register_at_fork"):  # threads stay behind in the parent
-    os.register_at_fork(after_in_child=_pool.cache_clear)
-
-
 @lru_cache(maxsize=1)
 def cores() -> int:
     """Cores this process may use: MMGTUNE_THREADS of them where that is set, for many processes side by side.
@@ -62,6 +58,7 @@ def cores() -> int:
 
 
 if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)  # threads stay behind in the parent
     os.register_at_fork(after_in_child=cores.cache_clear)  # a child may be told another number
 
 

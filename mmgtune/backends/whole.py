@@ -1,8 +1,7 @@
 """Run a model through the already compiled kernel of all effects.
 
 A kernel of its own takes seconds to compile for every combination of effects.  The kernel of all effects skips those
-that
-a model does not have, with bit-identical results; it takes a little longer.
+that a model does not have, with bit-identical results; it takes a little longer.
 """
 
 from __future__ import annotations

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from ..trial import TrialSet
 from ..trial.position_jumps import position_jumps
 
@@ -23,7 +21,5 @@ def in_parts(trials: TrialSet) -> tuple[TrialSet, list[str]]:
     if not jumps:
         return trials, []
     divided = trials.divided({id: [row for row, _ in found] for id, found in jumps.items()})
-    # A file is known by its run, which its parts share: what is left out in turn is all of it.
-    parts = {id: replace(one, cut_from=one.run) if one.part_of else one for id, one in divided.trials.items()}
     told = [f"the position of {id} jumps by {max(size for _, size in found):.3g} m" for id, found in jumps.items()]
-    return replace(divided, trials=parts), told
+    return divided, told

@@ -134,15 +134,16 @@ class Diagnosis(Answer):
 
     def to_dict(self) -> dict[str, Any]:
         """The document of ``diagnosis.json``, schema 1 (docs/formats.md)."""
+        said = saying.said(self)
         return {
             "schema": SCHEMA,
             "kind": "diagnosis",
             **self.provenance,
             "interrupted": self.interrupted,
             "verdict": self.verdict,
-            "sentence": self.sentence(),
-            "headline": saying.said(self).headline,
-            "explained": saying.said(self).explained,
+            "sentence": said.sentence,
+            "headline": said.headline,
+            "explained": said.explained,
             "jumped": list(self.jumped),
             "warnings": list(self.warnings),
             "coverage": self.coverage.to_dict() if self.coverage else {},

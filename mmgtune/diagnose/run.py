@@ -23,6 +23,7 @@ from ..made_from import identity_of, make_provenance
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..options.choice import must_be
+from ..phrases import capital
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, oddities
@@ -152,7 +153,7 @@ def _looked_at(
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     beside = [f"{one}: it was taken in parts there, which begin where their own first samples say" for one in jumped]
-    odd += [f"{said[0].upper()}{said[1:]}." for said in reversals(bench.model, seen)]
+    odd += [f"{capital(said)}." for said in reversals(bench.model, seen)]
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     contradicted = ""
     if result.verdict == "unexplained" and choice is None:
@@ -168,11 +169,8 @@ def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
 
 def _contradicted(trials: Mapping[str, Trial]) -> str:
     """What the logs of most trials say against each other, which is to be put right before a cause is looked for."""
-    away = turn_away(trials)
-    if 2 * len(away) <= len(trials):
-        return ""
-    of = f"{len(away)} of {len(trials)} trials" if len(trials) > 1 else "the trial"
-    return (
+    of = _most(len(turn_away(trials)), trials)
+    return of and (
         f"First put the logs right: in {of} the ship turns away from her rudder, so the sign of its angle is wrong, or "
         "those of heading and yaw rate."
     )
@@ -181,13 +179,18 @@ def _contradicted(trials: Mapping[str, Trial]) -> str:
 def _swinging(trials: Mapping[str, Trial], L_pp: float) -> str:
     """That the ship swings in most trials as in waves, which may be all that is left; "" where she does not."""
     periods = [period_of(found) for trial in trials.values() if (found := swings(trial, L_pp))]
-    if 2 * len(periods) <= len(trials):
-        return ""
-    of = f"{len(periods)} of {len(trials)} trials" if len(trials) > 1 else "the trial"
-    return (
+    of = _most(len(periods), trials)
+    return of and (
         f"In {of} the ship swings from beginning to end with a period of {np.median(periods):.2g} s, as in waves, "
         "which no manoeuvring model follows: that may be all that is left."
     )
+
+
+def _most(number: int, trials: Mapping[str, Trial]) -> str:
+    """So many of the trials, in words, where they are most of them; else ""."""
+    if 2 * number <= len(trials):
+        return ""
+    return f"{number} of {len(trials)} trials" if len(trials) > 1 else "the trial"
 
 
 def _derived(trials: Mapping[str, Trial]) -> list[str]:

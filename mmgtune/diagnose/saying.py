@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..phrases import in_percent, listed
+from ..phrases import capital, in_percent, listed
 from .gain import MOST
 from .leftover import change_in_words, in_words
 from .retuned import besides, far_off, weighed
@@ -54,16 +54,12 @@ def said(answer: Answer) -> Said:
         return Said(" ".join(["No cause that is the same in all voyages shows.", *told]))
     more = [*told, *([answer.together.sentence] if answer.together else [])]
     if answer.verdict != "unexplained":
-        apart = f"{_capital(listed(answer.jumped, 3))}. Apart from that: " if answer.jumped else ""
+        apart = f"{capital(listed(answer.jumped, 3))}. Apart from that: " if answer.jumped else ""
         return Said(" ".join([apart + _of_causes(answer), *more]))
     unknown = _of_the_unknown(answer)
     pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
     first, *why = [*pieces, unknown.why]
     return Said(first, " ".join(filter(None, why)), unknown.leading, " ".join(more))
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def _where(answer: Answer) -> str:

@@ -26,6 +26,7 @@ from ..model import Model
 from ..objective import spread
 from ..options import FitOptions, LeaveOutOptions
 from ..options.choice import must_be
+from ..phrases import capital
 from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
@@ -431,7 +432,7 @@ def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: L
     return [
         *oddities({trial.id: trial for trial in tuned}, model.L_pp),
         *(f"{words}." for words in in_words(model.profile.doubts())),
-        *(f"{note[0].upper()}{note[1:]}." for note in around),
+        *(f"{capital(note)}." for note in around),
         *coverage_notes(model, targets, Coverage.of(tuned, model.L_pp)),
         *beyond,
         *held_words(model.profile, options, tuned),

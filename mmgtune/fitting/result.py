@@ -15,6 +15,7 @@ from ..displayed import Plotted
 from ..documents import finite, finite_values
 from ..model import Model, Tie
 from ..options import FitOptions
+from ..phrases import capital
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
 from ..profile.doubts import in_words
@@ -238,7 +239,7 @@ class FitResult(Plotted):
             )
         trials = [c.trial for c in self.compared]
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
-        found += [f"{note[0].upper()}{note[1:]}." for note in around]
+        found += [f"{capital(note)}." for note in around]
         found += coverage_notes(Model(self.profile, self.ties), self.box.names, self.coverage)
         found += held_words(self.profile, self.options, [c.trial for c in self.compared if c.role == "tune"])
         never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})

@@ -11,6 +11,7 @@ from typing import Any
 from .. import limits
 from ..documents import write_json
 from ..errors import OptionError, Problem, reason
+from ..phrases import capital
 from . import rows as result_rows
 from .changes import FEWEST, LEVEL, SURE, Course
 from .pooling import classes_of, write_classes
@@ -158,7 +159,7 @@ def _course(what: Course | None) -> dict[str, Any] | None:
 def _sentence(one: Series, size: float, error: float, between: tuple[str, str]) -> str:
     unit = f" {one.unit}" if one.unit else ""
     verb = "rises" if size > 0.0 else "falls"
-    words = one.words if one.words == one.name else one.words[0].upper() + one.words[1:]
+    words = one.words if one.words == one.name else capital(one.words)
     return f"{words} {verb} by {abs(size):.3g}{unit} (± {error:.2g}) between {between[0]} and {between[1]}"
 
 

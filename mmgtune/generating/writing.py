@@ -15,6 +15,7 @@ from ..inputs import INPUTS
 from ..model import Model
 from ..options import MakeOptions
 from ..options.choice import must_be
+from ..phrases import capital
 from ..profile import ShipProfile, froude_scaled, load_profile
 from ..trial import Trial, write_trial
 from ..trial.schema import MAIN_INPUTS
@@ -104,7 +105,7 @@ def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions()
             write_trial(shown, folder / f"{truth.id}.parquet", overwrite=True)
         ids = ", ".join(f'"{one}"' for one in plan.ids)
         for place in (folder, folder / "truth"):
-            about = plan.about[0].upper() + plan.about[1:]
+            about = capital(plan.about)
             write_text(place / "split.toml", SPLIT.format(about=about, ship=profile.id, ids=ids))
         counts = {
             "trials": len(samples),

@@ -104,24 +104,22 @@ class TrialSet(Plotted):
 
         every  time between samples that count [s], None for all: each window has one at least, if its trial has
         """
-        pieces = {name: windows(trial, length, every) for name, trial in self.trials.items()}
+        return self._in_pieces({name: windows(trial, length, every) for name, trial in self.trials.items()})
+
+    def divided(self, rows: Mapping[str, Sequence[int]]) -> TrialSet:
+        """The same set with some trials divided at rows, by id; each piece has the role of its trial."""
+        return self._in_pieces(
+            {name: divided(trial, rows[name]) if name in rows else [trial] for name, trial in self.trials.items()}
+        )
+
+    def _in_pieces(self, pieces: Mapping[str, Sequence[Trial]]) -> TrialSet:
+        """The same set with pieces in the place of each trial, each in the role of its trial."""
 
         def ids(names: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(piece.id for name in names for piece in pieces[name])
 
         cut = {piece.id: piece for of_one in pieces.values() for piece in of_one}
         return replace(self, trials=cut, tune=ids(self.tune), test=ids(self.test))
-
-    def divided(self, rows: Mapping[str, Sequence[int]]) -> TrialSet:
-        """The same set with some trials divided at rows, by id; each piece has the role of its trial."""
-        pieces = {name: divided(trial, rows.get(name, ())) for name, trial in self.trials.items() if rows.get(name)}
-
-        def ids(names: tuple[str, ...]) -> tuple[str, ...]:
-            return tuple(id for name in names for id in ([one.id for one in pieces.get(name, ())] or [name]))
-
-        kept = {name: trial for name, trial in self.trials.items() if name not in pieces}
-        cut = {piece.id: piece for of_one in pieces.values() for piece in of_one}
-        return replace(self, trials=kept | cut, tune=ids(self.tune), test=ids(self.test))
 
     def hashes(self) -> dict[str, str]:
         """SHA-256 of each trial's file, by id."""
