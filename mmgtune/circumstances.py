@@ -13,6 +13,7 @@ from .inputs import INPUTS
 from .model import Model
 from .phrases import listed
 from .physics.quantities import HELD, KNOWN, Surroundings
+from .profile import ShipProfile
 from .trial import Trial, measured_around, surroundings
 
 WORDS = {
@@ -47,16 +48,22 @@ def notes_on(
 
 def reversals(model: Model, trials: Sequence[Trial]) -> list[str]:
     """A sentence on trials in which a propeller turns astern that the ship's equations do not have so; else none."""
-    propeller = model.profile.sections["propeller"].component.tag if "propeller" in model.profile.sections else ""
+    propeller = without_reverse(model.profile)
     turned = [name for name in model.inputs if INPUTS[name].role == "propeller"]
     ids = [one.whole for one in trials if any(np.mean(one.inputs([name]) < 0.0) > OFTEN for name in turned)]
-    if not ids or propeller in ASTERN:
+    if not ids or propeller is None:
         return []
     told = (
         f"the propeller turns astern in {listed(list(dict.fromkeys(ids)), 4)}, and the propeller '{propeller}' of "
         f"'{model.profile.id}' has no revolutions astern: what is off there may be that alone"
     )
     return [told]
+
+
+def without_reverse(profile: ShipProfile) -> str | None:
+    """The propeller of a ship whose equations have no revolutions astern; None where they do."""
+    propeller = profile.sections["propeller"].component.tag if "propeller" in profile.sections else ""
+    return None if propeller in ASTERN else propeller
 
 
 def acts_on_surroundings(model: Model) -> bool:

@@ -13,6 +13,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import get_backend
+from .circumstances import without_reverse
 from .components.propeller import ASTERN
 from .errors import OptionError, Problem
 from .manoeuvres.on_lanes import LaneRecord, stopping, turning, zigzag
@@ -83,8 +84,8 @@ class IndexComparison:
 
 def no_reverse(profile: ShipProfile, where: str = "", instead: str = "", why: str = NO_REVERSE) -> Problem | None:
     """What is wrong with revolutions astern of a ship; None where her equations have them."""
-    propeller = profile.sections["propeller"].component.tag if "propeller" in profile.sections else ""
-    if propeller in ASTERN:
+    propeller = without_reverse(profile)
+    if propeller is None:
         return None
     what = f"the propeller '{propeller}' of '{profile.id}' has no revolutions astern"
     fix = f"take a profile with the propeller {', '.join(map(repr, ASTERN))}, or {instead}"

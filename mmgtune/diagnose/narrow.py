@@ -21,12 +21,6 @@ AS_MUCH = 0.5
 FEW = 3
 """Targets that may be so far off: with more, any model bends to anything, and no ship differs so."""
 
-STEPS = 20
-"""Steps of that fit: it only has to show whether there is something to gain."""
-
-HARDLY = 0.01
-"""Share of what the causes explain that counts as none in it."""
-
 
 def narrow_box(bench: Workbench, found: Found) -> list[str]:
     """Warnings of a diagnosis whose re-tuned model, any cause apart, would fit about as well in a wider box.
@@ -42,16 +36,7 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     wide = _let_go(bench, at_end)
     box = wide.sub_box(base.names)
     values = bench.sub_box(base.names).from_unit(base.unit[:, None])[:, 0]
-    start = np.clip(box.to_unit(values), 0.0, 1.0)[:, None]
-    other = wide.refit(
-        base.names,
-        start,
-        base.offsets,
-        integrator=base.integrator,
-        max_iterations=STEPS,
-        tolerance=HARDLY * explained,
-    )
-    gained = base.chi2 - other.chi2
+    gained, other = wide.gained(base, np.clip(box.to_unit(values), 0.0, 1.0), explained)
     ends = box.from_unit(other.unit[:, None])[:, 0]
     gone = [
         f"{name} {abs(ends[k] / box.pre[k] - 1.0):.0%} {'above' if abs(ends[k]) > abs(box.pre[k]) else 'below'}"

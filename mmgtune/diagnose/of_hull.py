@@ -15,12 +15,6 @@ AS_WELL, PARTLY = 0.9, 0.5
 """Share of the fall of chi-squared by a cause that such a hull brings, from which the cause is not told from it, and
 from which it is spoken of."""
 
-STEPS = 20
-"""Steps of that fit: it only has to show what there is to gain."""
-
-HARDLY = 0.01
-"""Share of the fall that counts as none in it."""
-
 
 def explained_by_hull(bench: Workbench, cause: Hypothesis, fewer: Point, chi2: float) -> float:
     """Share of the fall of chi-squared by a cause that a hull further off brings without it; 0 where that is not asked.
@@ -35,17 +29,9 @@ def explained_by_hull(bench: Workbench, cause: Hypothesis, fewer: Point, chi2: f
     if not of_ship or cause.by or cause.instead or not bench.believed.leeway or not fall > 0.0:
         return 0.0
     further = {name: FURTHER * deviation for name, deviation in bench.believed.leeway.items()}
-    other = replace(bench, believed=replace(bench.believed, leeway=further)).refit(
-        fewer.names,
-        fewer.unit[:, None],
-        fewer.offsets,
-        integrator=fewer.integrator,
-        spreads=fewer.spreads,
-        max_iterations=STEPS,
-        tolerance=HARDLY * fall,
-        hopeless=fewer.chi2 - PARTLY * fall,
-    )
-    return (fewer.chi2 - other.chi2) / fall
+    looser = replace(bench, believed=replace(bench.believed, leeway=further))
+    gained, _ = looser.gained(fewer, fewer.unit, fall, hopeless=fewer.chi2 - PARTLY * fall)
+    return gained / fall
 
 
 def in_words(bench: Workbench, tag: str, share: float) -> str:

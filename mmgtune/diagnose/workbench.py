@@ -31,6 +31,9 @@ from .runs import between, labels_of
 TOLERANCE = 0.2
 """Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""
 
+STEPS, HARDLY = 20, 0.01
+"""Steps of a fit that only has to show what there is to gain, and share of what it is held against that is nothing."""
+
 LOOSE = 3.0
 """Initial states may leave their first sample by this many deviations of white noise before noise is known better."""
 
@@ -219,6 +222,25 @@ class Workbench:
             Point(names, end.unit, end.offsets, self._total(end, beliefs), method, spreads, promised)
             for end, promised in zip(ends, further, strict=True)
         ]
+
+    def gained(self, there: Point, unit: FloatArray, fall: float, hopeless: float = math.inf) -> tuple[float, Point]:
+        """Fall of chi-squared by a fit on this workbench of what is free at a point fitted on another, and its end.
+
+        unit      (n_names,) where it starts
+        fall      that it is held against: the fit is only as close as shows which share of it there is to gain
+        hopeless  as in ``refits``
+        """
+        end = self.refit(
+            there.names,
+            unit[:, None],
+            there.offsets,
+            integrator=there.integrator,
+            spreads=there.spreads,
+            max_iterations=STEPS,
+            tolerance=HARDLY * fall,
+            hopeless=hopeless,
+        )
+        return there.chi2 - end.chi2, end
 
     def _total(self, end: LeastSquaresResult, beliefs: tuple[FloatArray, FloatArray] | None) -> float:
         """Chi-squared of an end; inf where its numbers ran away: what is compared with others has to have an order."""

@@ -44,6 +44,9 @@ def test_a_run_is_divided_where_its_position_jumps(sailed):
     before, after = (sailed.tune, divided.tune) if id in sailed.tune else (sailed.test, divided.test)
     assert [one for one in after if one not in before] == [first.id, second.id]
     assert in_parts(sailed) == (sailed, [])
+    for rows in ([row], [1], range(1, whole.n_samples, 2)):  # of pieces too short for a trial none is left
+        pieces = sailed.divided({id: rows})
+        assert sorted([*pieces.tune, *pieces.test]) == sorted(pieces.trials)
 
 
 def test_a_receiver_that_jumps_all_the_time_is_left(sailed):
