@@ -27,6 +27,10 @@ ISO = r"\d{4}-?\d{2}-?\d{2}[T ](?!.*[A-Ya-z]{2}$)"
 """Beginning of a date that the library reads, which knows no zones by name."""
 
 
+READABLE = "seconds, 2024-05-14T02:15:00, 14.05.2024 02:15:00, 02:15:00, 021500"
+"""Stamps of each form."""
+
+
 class Stamps:
     """Turns time cells into numbers, block by block; ``decimal`` and ``thousands`` are the signs in them."""
 
@@ -150,10 +154,6 @@ def falls(t: FloatArray) -> bool:
     """Whether stamps (n_rows,) stand newest first."""
     steps = np.diff(t[np.isfinite(t)])
     return len(steps) > 2 and float(np.mean(steps <= 0.0)) > NEWEST_FIRST and float(np.median(steps)) < 0.0
-
-
-READABLE = "seconds, 2024-05-14T02:15:00, 14.05.2024 02:15:00, 02:15:00, 021500"
-"""Stamps of each form."""
 
 
 @dataclass

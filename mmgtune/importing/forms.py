@@ -51,10 +51,11 @@ def form_of(log: Path) -> str:
         raise LogError(Problem("the log is no text", str(log), why, fix))
     if content.startswith((b"MATLAB", b"\x89HDF")) or (content[126:128] in (b"IM", b"MI") and binary(content)):
         return "mat"
-    if re.match(rb"\s*[$!][A-Z]{4,},", content.removeprefix(b"\xef\xbb\xbf")):
+    text = content.removeprefix(b"\xef\xbb\xbf")
+    if re.match(rb"\s*[$!][A-Z]{4,},", text):
         return "nmea"
     for begins, (kind, fix) in _OTHERS.items():
-        if re.match(begins, content.removeprefix(b"\xef\xbb\xbf")):
+        if re.match(begins, text):
             why = "logs are text tables, Parquet, .xlsx, MATLAB files and NMEA 0183"
             raise LogError(Problem(f"the log is {kind}", str(log), why, fix))
     return "csv"

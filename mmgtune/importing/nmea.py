@@ -16,12 +16,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import LogError, Problem
-from ..trial.schema import impossible
 from ..units import DEG, KNOT, factors
 from .clock import put_right
 from .mapping import LogMap, TimeSource
 from .periods import DAY
-from .quantities import AGAINST, FASTEST, meaning, quantity_of
+from .quantities import AGAINST, QUANTITIES, meaning, quantity_of
 from .record import Record, Series, unwrapped
 from .table import MOST_ROWS
 
@@ -304,8 +303,7 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
         if source is not None and source.value is None:
             values = values * source.scale * (-1.0 if source.positive in AGAINST else 1.0) + source.offset
         quantity = quantity_of(name)
-        beyond = impossible(values, quantity.unit if quantity is not None else "m/s")
-        beyond |= np.abs(values) > (quantity.most if quantity is not None else FASTEST)
+        beyond = (quantity or QUANTITIES["sog"]).beyond(values)  # others are velocities
         if beyond.any():
             notes.append(f"{beyond.sum()} values of {meaning(name) or 'velocity'} are impossible; taken as gaps")
             values = np.where(beyond, np.nan, values)

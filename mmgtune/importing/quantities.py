@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS, Role
-from ..trial.schema import MOTION, SURROUNDINGS, Column, known_column, surrounding
+from ..trial.schema import MOTION, SURROUNDINGS, Column, impossible, known_column, surrounding
 
 AGAINST = ("south", "west", "port", "counterclockwise", "aft", "astern")
 """Words for a positive direction that is the opposite of the trial format's."""
@@ -31,6 +34,10 @@ class Quantity:
     origin: bool = False
     points: str = ""
     most: float = math.inf
+
+    def beyond(self, values: FloatArray) -> BoolArray:
+        """Which numbers (n_samples,) nothing about a ship can be."""
+        return impossible(values, self.unit) | (np.abs(values) > self.most)
 
 
 FASTEST = 100.0

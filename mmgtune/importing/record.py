@@ -12,7 +12,6 @@ import numpy as np
 from .. import units
 from ..arrays import BoolArray, FloatArray
 from ..errors import LogError, Problem
-from ..trial.schema import impossible
 from .degrees import DDMM
 from .digits import print_step, within_digits
 from .headers import unit_in
@@ -242,7 +241,7 @@ def possible(name: str, values: FloatArray, source: Source, unit: str, table: Ta
     quantity = known_quantity(name)
     with np.errstate(over="ignore"):
         size = values * (units.factors(quantity.unit)[unit] * source.scale) + source.offset
-    beyond = impossible(size, quantity.unit) | (np.abs(size) > quantity.most)
+    beyond = quantity.beyond(size)
     if not beyond.any():
         return values
     said = f"{beyond.sum()} of {len(values)} values of '{table.headers[name]}' are impossible for {meaning(name)}"

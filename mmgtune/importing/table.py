@@ -180,10 +180,14 @@ class Cells:
         found = of_ddmm(numbers)
         wrong = np.flatnonzero(np.isnan(found) & np.isfinite(numbers))
         if len(wrong):
-            bad = self.bad.setdefault(name, BadCells(0, int(rows[wrong[0]]), f"{numbers[wrong[0]]:.10g}"))
-            bad.count += len(wrong)
-            self.parted.setdefault(name, "minutes are less than 60")
+            shown = f"{numbers[wrong[0]]:.10g}"
+            self._makes_none(name, len(wrong), int(rows[wrong[0]]), shown, "minutes are less than 60")
         return found
+
+    def _makes_none(self, name: str, count: int, row: int, shown: str, why: str) -> None:
+        """Note cells of a latitude or longitude that make none; of several reasons the first is told."""
+        self.parted.setdefault(name, why)
+        self.bad.setdefault(name, BadCells(0, row, shown)).count += count
 
     def position_of(self, name: str, columns: Mapping[str, Any], rows: IntArray) -> FloatArray:
         """Degrees (n_rows,) of pandas columns that hold a part of a latitude or longitude each, by what they hold."""
@@ -194,9 +198,8 @@ class Cells:
             k = int(np.flatnonzero(wrong)[0])
             cells = [str(one.iloc[k]) for one in columns.values()]
             shown = next((one for one in cells if is_unit(one)), " ".join(cells))
-            self.parted.setdefault(name, next(reason for reason, of in found.wrong.items() if of[k]))
-            bad = self.bad.setdefault(name, BadCells(0, int(rows[k]), shown[:80]))
-            bad.count += int(wrong.sum())
+            why = next(reason for reason, of in found.wrong.items() if of[k])
+            self._makes_none(name, int(wrong.sum()), int(rows[k]), shown[:80], why)
         return found.degrees
 
     def judge(self, table: Table, log_map: LogMap, n_rows: int) -> None:

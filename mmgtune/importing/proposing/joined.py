@@ -69,15 +69,13 @@ def _read_ddmm(find: Finder) -> None:
     One of the two beyond its largest angle shows it of both.
     """
     named = {name: [k for k, word in enumerate(find.said) if word == name] for name in HEMISPHERES}
-    pairs = itertools.product(*named.values())
-    for pair in pairs:
-        whole = {k: np.concatenate([one.numbers[k] for one in find.samples]) for k in pair}
-        known = {k: values[np.isfinite(values)] for k, values in whole.items()}
-        can = [
-            len(known[k]) and np.all(np.abs(of_ddmm(known[k])) <= MOST[name])
-            for name, k in zip(named, pair, strict=True)
-        ]
-        must = [np.max(np.abs(known[k]), initial=0.0) > MOST[name] for name, k in zip(named, pair, strict=True)]
+    for pair in itertools.product(*named.values()):
+        can, must = [], []
+        for name, k in zip(named, pair, strict=True):
+            values = np.concatenate([one.numbers[k] for one in find.samples])
+            known = values[np.isfinite(values)]
+            can.append(len(known) > 0 and bool(np.all(np.abs(of_ddmm(known)) <= MOST[name])))
+            must.append(bool(np.max(np.abs(known), initial=0.0) > MOST[name]))
         if all(can) and any(must):
             find.samples = [_in_degrees(one, pair) for one in find.samples]
             find.first = find.samples[0]

@@ -430,6 +430,8 @@ def _separator(lines: Sequence[str]) -> tuple[str, str]:
     best: tuple[float, str, str] = (-1.0, ",", ".")
     divided_by_header = False
     for mark in MARKS:
+        if mark == " " and divided_by_header:
+            break  # blanks may stand in cells, such as those of dates and of 5.0 P
         rows = [fields_of(line, mark) for line in body]
         counts = [len(row) for row in rows]
         usual = max(set(counts), key=counts.count, default=0)
@@ -440,12 +442,9 @@ def _separator(lines: Sequence[str]) -> tuple[str, str]:
         comma = sum(_COMMA.fullmatch(cell) is not None for cell in cells)
         dated = sum(_DATED.fullmatch(cell) is not None for cell in cells)
         score = counts.count(usual) / len(counts) * (plain + comma + dated) / max(1, len(cells))
-        if mark == " " and divided_by_header:
-            break  # blanks may stand in cells, such as those of dates and of 5.0 P
-        named = any(
-            len(row) == usual and _names(row, usual) for row in (fields_of(line, mark) for line in lines[:HEAD])
-        )
-        divided_by_header = divided_by_header or (named and usual > 2 and counts.count(usual) > ALMOST * len(counts))
+        if usual > 2 and counts.count(usual) > ALMOST * len(counts):
+            head = (fields_of(line, mark) for line in lines[:HEAD])
+            divided_by_header = divided_by_header or any(len(row) == usual and _names(row, usual) for row in head)
         if score > best[0] + 0.02:
             # Between commas only what is quoted has commas in it: numbers, or thousands of numbers with points.
             points = sum("." in cell and _NUMBER.fullmatch(cell) is not None for cell in cells) if mark == "," else 0
