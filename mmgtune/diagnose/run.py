@@ -152,7 +152,9 @@ def _looked_at(
     result, found = judge.answer(found, brought)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
-    beside = [f"{one}: it was taken in parts there, which begin where their own first samples say" for one in jumped]
+    beside = [
+        f"{capital(one)}: it was taken in parts there, which begin where their own first samples say." for one in jumped
+    ]
     odd += [f"{capital(said)}." for said in reversals(bench.model, seen)]
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     contradicted = ""

@@ -10,7 +10,7 @@ from typing import Any
 from ..units import DIMENSIONLESS, NORMAL_95, read_as
 from . import advice, findings, measures, motion_block, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
-from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance, ship_name
+from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance, ship_name, warnings
 from .differences import differences
 from .forces import ship_of
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
@@ -98,7 +98,7 @@ def build(record: DiagnosisRecord) -> Page:
         warnings=(
             *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
             *doubts(data),
-            *(clean(text) for text in data.get("warnings") or ()),
+            *warnings(data),
         ),
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
