@@ -420,7 +420,7 @@ class _Reader(TomlReader):
         elif given and "column" not in table and "value" not in table:
             fix = 'write column = "..." for the degrees'
             self.problem(f"'{where}.{given[0]}' is given without the degrees", where, given[0], fix=fix)
-        elif given and canonical(table.get("unit")) not in (None, "deg", *([DDMM] if given == ["hemisphere"] else [])):
+        elif given and canonical(table.get("unit")) in ("rad", *([] if given == ["hemisphere"] else [DDMM])):
             fix = "remove it: the column holds degrees"
             self.problem(f"'{where}.unit' is {brief(table['unit'])}, beside '{given[0]}'", where, "unit", fix=fix)
         if "seconds" in given and "minutes" not in given:

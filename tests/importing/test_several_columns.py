@@ -287,6 +287,8 @@ def test_rows_that_make_no_position_are_gaps(tmp_path):
         ('column = "lat_deg", ', "", "'columns.latitude.minutes' is given without the degrees"),
         ('hemisphere = "lat_NS"', 'hemisphere = "lat_NS", positive = "south"', "both 'hemisphere' and 'positive'"),
         ('hemisphere = "lat_NS"', 'unit = "rad"', "'columns.latitude.unit' is 'rad', beside 'minutes'"),
+        ('hemisphere = "lat_NS"', 'unit = "ddmm"', "'columns.latitude.unit' is 'ddmm', beside 'minutes'"),
+        ('hemisphere = "lat_NS"', 'unit = "ddmmm"', "error: unit of 'latitude' is 'ddmmm'"),
         ('column = "heading"', 'column = "heading", minutes = "rate"', "'columns.psi.minutes' is for latitude"),
     ],
 )
