@@ -15,6 +15,17 @@ from tests.command import start
 NAMES = ("t.parquet", "log.csv", "map.toml", "net.safetensors", "orders.csv", "base.json", "fleet.toml")
 
 
+def refused(line: tuple[str, ...], folder: Path) -> str:
+    """What a command says that ends with exit code 2, and does not wait for anybody at the other end."""
+    process = start(*line, cwd=folder)
+    try:
+        _, said = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 2, said
+    return said
+
+
 @pytest.mark.parametrize(
     "line",
     [
@@ -35,12 +46,7 @@ def test_a_pipe_that_nobody_writes_into(line: tuple[str, ...], tmp_path: Path) -
     for name in NAMES:
         os.mkfifo(tmp_path / name)
     (tmp_path / "plain.csv").write_text("t,x\n0,1\n")
-    process = start(*line, cwd=tmp_path)
-    try:
-        _, said = process.communicate(timeout=60)
-    finally:
-        process.kill()
-    assert process.returncode == 2, said
+    said = refused(line, tmp_path)
     assert "it is a pipe" in said
     assert "fix: " in said
 
@@ -82,11 +88,6 @@ def test_nothing_is_written_in_the_place_of_a_pipe(line: tuple[str, ...], name: 
     path.parent.mkdir(exist_ok=True)
     (path.parent / "predict.json").write_text("{}")
     os.mkfifo(path)
-    process = start(*line, cwd=tmp_path)
-    try:
-        _, said = process.communicate(timeout=60)
-    finally:
-        process.kill()
-    assert process.returncode == 2, said
+    said = refused(line, tmp_path)
     assert f"error: the output is not a file ({name})" in said
     assert path.is_fifo()
