@@ -62,6 +62,14 @@ LEFT, OF_REST, BESIDE_SENSORS = 0.2, 0.9, 0.5
 all must remove, for it to be no matter of their form: what a form leaves has no such shape; beside causes in sensors
 alone, which have no form that could be a little off: a log that shows 1.1 times the speed does so exactly."""
 
+BY_VALUES_OF_RUNS = 10.0
+"""Share of the error on held-out trials over that of the fall of chi-squared, beside a cause with values of each run,
+beyond which it is no more than these: estimated on the first part of a run they miss the rest by chance."""
+
+MOVES = 0.1
+"""Share of the size of another cause by which that would be off, and beyond its interval, without one that a user would
+notice by this."""
+
 SHOWS, OWN = 0.2, 100.0
 """Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
 over what the others' form may leave: a cause that removes as much in any channel is no matter of that form."""
@@ -79,7 +87,9 @@ class Contribution:
     own      by channel, share of the error removed in that channel by all causes that is lost without it
     whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
     bends    whether it has run-specific values, which can imitate other errors, on held-out trials too
+    beside_runs  whether another cause has such values
     slight   whether it is the only cause, of a size that is not worth reporting, and unnoticed when left out
+    moves    share of its size by which another cause would be off, and told wrong, without it
     of_hull  share of what it explains that a hull further off than believed would explain; see ``explained_by_hull``
 
     Where ``seen`` alone shows that it is no trace, the other fields are not worked out: NaN and empty.
@@ -93,7 +103,9 @@ class Contribution:
     own: Mapping[str, float] = field(default_factory=dict)
     whole: bool = False
     bends: bool = False
+    beside_runs: bool = False
     slight: bool = False
+    moves: float = 0.0
     of_hull: float = 0.0
 
     @property
@@ -128,14 +140,23 @@ class Contribution:
             return self.slight
         if self.harmful:
             return True
-        shown = self.seen if self.bends else max(self.share, self.seen)
-        little = shown < self.form or (self.share < FORM and self.seen < HARDLY_SEEN)
+        if self.moves >= MOVES:
+            return False
+        little = self._shown < self.form or (self.share < FORM and self.seen < HARDLY_SEEN)
         if little and not (self.stands_out or self.whole):
             return True
         moved = all(
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
         )
         return self.seen < SMALL and self.share < SHARE and max(self.channels.values()) < OF_NOISE and moved
+
+    @property
+    def _shown(self) -> float:
+        """Share that it shows of what all causes remove."""
+        if self.bends:
+            return self.seen
+        held_out = min(self.share, BY_VALUES_OF_RUNS * self.seen) if self.beside_runs else self.share
+        return max(held_out, self.seen)
 
     @property
     def little(self) -> bool:
@@ -217,7 +238,7 @@ def set_aside(
         brought = [_alone(found, unseen)]
     if len(brought) == 1 and not before.noticed and size_of(bench, found.final, found.causes[0]) < WORTH:
         brought = [replace(brought[0], slight=True)]
-    brought = _beside_hull(bench, found, fewer, brought)
+    brought = _weighed(bench, found, fewer, brought)
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
         cause = found.causes[k]
@@ -225,19 +246,54 @@ def set_aside(
         found.final = fewer[k] if fewer else without(bench, found.final, cause)
         del found.causes[k]
         fewer = _fewer(bench, found)
-        brought = _beside_hull(bench, found, fewer, _brought(bench, found, fewer, unseen))
+        brought = _weighed(bench, found, fewer, _brought(bench, found, fewer, unseen))
     return traces, brought
 
 
-def _beside_hull(
+def _weighed(
     bench: Workbench, found: Found, fewer: Sequence[Point], brought: Sequence[Contribution]
 ) -> list[Contribution]:
-    """Contributions with what a hull further off would explain of each cause."""
+    """Contributions with what a hull further off would explain of each cause, and what others would be without those
+    that seem unnoticed."""
     points = fewer or [found.base] * len(found.causes)
-    return [
+    weighed = [
         replace(one, of_hull=explained_by_hull(bench, cause, point, found.final.chi2))
         for one, cause, point in zip(brought, found.causes, points, strict=True)
     ]
+    asked = [k for k, one in enumerate(weighed) if fewer and one.unnoticed and not (one.harmful or one.like_hull)]
+    if not asked:
+        return weighed
+    sizes = estimates(bench, found.final)
+    for k in asked:
+        weighed[k] = replace(weighed[k], moves=_moved(bench, found, found.causes[k], fewer[k], sizes))
+    return weighed
+
+
+def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, sizes: Mapping[str, Estimate]) -> float:
+    """Largest share of its size by which another cause with one value for all is off without one, of those that are off
+    by more than their interval allows.
+
+    fewer  the best fit without it
+    """
+    values = bench.values(fewer)
+    there, gone = ({n: z for n, z in zip(p.names, p.unit, strict=True)} for p in (found.final, fewer))
+    largest = 0.0
+    for other in found.causes:
+        wrong = any(_is_beyond(sizes[name], values[name]) for name in other.names if name in values)
+        size = size_of(bench, found.final, other)
+        if other is cause or other.by or not wrong or not size > 0.0 or not set(other.names) <= set(gone):
+            continue
+        off = math.hypot(*((gone[name] - there[name]) / typical(bench, name) for name in other.names))
+        largest = max(largest, off / size)
+    return largest
+
+
+def _is_beyond(estimate: Estimate, value: float) -> bool:
+    """Whether a value is further from an estimate than twice its interval reaches."""
+    if estimate.low is None or estimate.high is None:
+        return False
+    middle, half = 0.5 * (estimate.low + estimate.high), 0.5 * (estimate.high - estimate.low)
+    return abs(value - middle) > 2.0 * half
 
 
 def size_of(bench: Workbench, point: Point, cause: Hypothesis) -> float:
@@ -314,7 +370,8 @@ def _of(
             own[name] = float(by_one / max(by_all, by_one))
     share = float(removed[1]) / scale if scale > 0.0 else 1.0
     whole = takes_the_rest(bench, found, cause, fewer)
-    return Contribution(seen, share, channels, changes, form, own, whole, bool(cause.by))
+    beside_runs = any(one.by for one in found.causes if one is not cause)
+    return Contribution(seen, share, channels, changes, form, own, whole, bool(cause.by), beside_runs)
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:

@@ -104,8 +104,8 @@ class Judge:
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]
     ) -> tuple[Diagnosis, Found]:
         """The answer without small causes that cannot be told from others, the smallest first, as long as it holds
-        without them."""
-        while result.groups and result.names_causes and len(found.causes) > 1 and not self.hooks.stop():
+        without them; of three it may only do so then."""
+        while result.groups and len(found.causes) > 1 and not self.hooks.stop():
             groups = {tag: others for tag, *others in result.groups}
             doubtful = [
                 (one.seen, cause, one)

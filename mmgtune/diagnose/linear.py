@@ -279,7 +279,7 @@ def linearise(
 
     absent  parameters at their null that get a signature over a typical size
     apart   parameters that are free in the point and get a signature, by their derivative, instead of being re-tuned;
-            targets are re-tuned beside these no farther than their boxes let them
+            targets are re-tuned beside these no farther than their boxes let them, those at a bound inwards too
     varying parameters, free or among the absent, that trials may have values of their own of
     """
     there = {base_of(name) for name in point.names}
@@ -302,6 +302,7 @@ def linearise(
     inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in free], dtype=bool)
     loose = inside & np.array([name in bench.believed.deviations for name in point.names], dtype=bool)
     own = [name for name, is_loose in zip(point.names, loose, strict=True) if is_loose]
+    inwards_from = _from_bounds(bench, point, apart, left[:, 0], left[:, 1 : 1 + n_free])
     moved_by = left[:, 1 : 1 + n_free][:, loose] / np.array([unit_of(bench, name) for name in own])
     left[:, 0] -= moved_by @ (point.unit[loose] - bench.null(own))  # where nothing with leeway has moved
     plain = {
@@ -312,7 +313,7 @@ def linearise(
     by_tuning, moved_by = left[:, 1 : 1 + n_free][:, inside & ~loose], moved_by * deviation
     if apart:
         widths = [unit_of(bench, name) for name in np.array(point.names)[inside & ~loose].tolist()]
-        moved_by = np.column_stack([moved_by, BOXED * by_tuning / np.array(widths)])
+        moved_by = np.column_stack([moved_by, BOXED * by_tuning / np.array(widths), inwards_from])
         by_tuning = by_tuning[:, :0]
     tuned = Tuned.by(by_tuning, moved_by)
     left = tuned.out_of(left)
@@ -351,6 +352,23 @@ def linearise(
         retuned=retuned,
         fitted=fitted,
     )
+
+
+def _from_bounds(
+    bench: Workbench, point: Point, apart: Sequence[str], residual: FloatArray, columns: FloatArray
+) -> FloatArray:
+    """What free coefficients that ended at a bound change (n_rows, k), over the standard deviation of where they may be
+    within it: as far as they get until chi-squared has grown by two, or anywhere in their box.
+
+    residual, columns  (n_rows,) and (n_rows, n_free) for a step of each name, initial states taken out
+    """
+    at_bound = [k for k, z in enumerate(point.unit) if not 0.0 < z < 1.0 and point.names[k] not in apart]
+    if not at_bound:
+        return columns[:, :0]
+    kept = columns[:, at_bound]
+    steep = np.abs(kept.T @ residual)
+    box = np.array([BOXED / unit_of(bench, point.names[k]) for k in at_bound])
+    return np.asarray(kept * np.minimum(box, 1.0 / np.maximum(steep, 1e-300)))
 
 
 def unit_of(bench: Workbench, name: str) -> float:

@@ -400,13 +400,14 @@ def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
 
 def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
     """Other hypotheses that would do nearly as well in the place of a cause, all others in place: of those that were
-    near when it was found."""
+    near when it was found, or another form of the same effect whose place it took."""
     step = step_of(found, cause)
     if step is None:
         return []
-    near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]
-    if len(found.causes) == 1:
+    others = [one for one in found.steps if one is not step and one.accepted and _is_of(one, cause)]
+    if len(found.causes) == 1 and not others:
         return rivals_among(step.refits)
+    near = [rival for one in (step, *others) for rival in _near(one, cause)]
     fewer = without(bench, found.final, cause)
     best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
     rivals: dict[str, Refit] = {}
@@ -418,3 +419,13 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
         if not best.beats(rival):
             rivals.setdefault(rival.hypothesis.tag, rival)
     return list(rivals.values())
+
+
+def _is_of(step: Step, cause: Hypothesis) -> bool:
+    """Whether what was found in a look is of the effect of a cause, in whatever form."""
+    return bool(step.refits) and step.refits[0].hypothesis.tag == cause.tag
+
+
+def _near(step: Step, cause: Hypothesis) -> list[Refit]:
+    """Refits of a look that came near to the best, and are of another effect than a cause."""
+    return [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]

@@ -72,6 +72,10 @@ A_TENTH = 0.1
 BESIDE = 0.02
 """Variance beyond noise, as a share of it, from which a sum of causes leaves more than noise."""
 
+OF_MANY = 0.05
+"""Share of the fall of chi-squared that must be lost without any one of three causes, where not all of them can be told
+from others: a third that brings less is the form of the first two."""
+
 LEADS = 0.8
 """Share of the error that the first cause of a sum must remove alone, where nothing was fitted too, for its size to be
 told though the sum is not believed."""
@@ -239,7 +243,7 @@ class Answer(Plotted):
             return "all that they remove is little beside noise, and other sums would"
         if self.leftover.unknown > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
-        if len(brought) > 2 and self.groups:
+        if len(brought) > 2 and self.groups and min(one.seen for one in brought) < OF_MANY:
             return "not all of them can be told from others"
         several = sum(bool(cause.runs) for cause in self.causes) > 1
         if several and (len(brought) > 2 or not self.explains_all):
