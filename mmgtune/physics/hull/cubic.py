@@ -2,13 +2,9 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from ..prime import force_unit, moment_unit
 from ..quantities import Force, Lanes
-
-ASTERN = 0.05
-"""Share of the speed that is surge [-] below which the resistance fades, to change sign when going astern."""
+from .astern import resistance_ahead
 
 
 class CubicHull(NamedTuple):
@@ -46,8 +42,8 @@ def cubic_hull(flow, ship, p):
     r_ = flow.r_
     v2 = v_ * v_
     r2 = r_ * r_
-    ahead = np.minimum(np.maximum(flow.u / (ASTERN * flow.U), -1.0), 1.0)
-    X_ = -p.R_0 * ahead + p.X_vv * v2 + p.X_vr * v_ * r_ + p.X_rr * r2 + p.X_vvvr * v2 * v_ * r_ + p.X_vvvv * v2 * v2
+    R_ = resistance_ahead(p.R_0, flow)
+    X_ = -R_ + p.X_vv * v2 + p.X_vr * v_ * r_ + p.X_rr * r2 + p.X_vvvr * v2 * v_ * r_ + p.X_vvvv * v2 * v2
     Y_ = p.Y_v * v_ + p.Y_r * r_ + p.Y_vvv * v2 * v_ + p.Y_vvr * v2 * r_ + p.Y_vrr * v_ * r2 + p.Y_rrr * r2 * r_
     N_ = p.N_v * v_ + p.N_r * r_ + p.N_vvv * v2 * v_ + p.N_vvr * v2 * r_ + p.N_vrr * v_ * r2 + p.N_rrr * r2 * r_
     force = force_unit(ship.rho, ship.L_pp, ship.d, flow.U)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..prime import force_unit, moment_unit
 from ..quantities import Force, Lanes
-from .cubic import ASTERN
+from .astern import resistance_ahead
 
 
 class DerivativesHull(NamedTuple):
@@ -43,8 +43,7 @@ def derivatives_hull(flow, ship, p):
     r_ = flow.r_
     av = np.abs(v_)
     ar = np.abs(r_)
-    ahead = np.minimum(np.maximum(flow.u / (ASTERN * flow.U), -1.0), 1.0)
-    X_ = -p.R_0 * ahead + p.X_vr * v_ * r_
+    X_ = -resistance_ahead(p.R_0, flow) + p.X_vr * v_ * r_
     Y_ = v_ * (p.Y_v + p.Y_vv * av + p.Y_vr * ar + p.Y_vvr * v_ * r_ + p.Y_vrr * r_ * r_) + r_ * (p.Y_r + p.Y_rr * ar)
     N_ = v_ * (p.N_v + p.N_vv * av + p.N_vvr * v_ * r_ + p.N_vrr * r_ * r_) + r_ * (p.N_r + p.N_rr * ar)
     force = force_unit(ship.rho, ship.L_pp, ship.d, flow.U)

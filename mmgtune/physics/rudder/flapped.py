@@ -6,6 +6,7 @@ import numpy as np
 
 from ..elementary import arctan2, cos, sin, where
 from ..quantities import Lanes, RudderOut
+from .inflow import gain_in_race, straightening_by_side
 from .reaction import rudder_reaction
 
 
@@ -57,11 +58,11 @@ def flapped_rudder(flow, ship, wake, propeller, delta, p):
     L = ship.L_pp
     eta = propeller.D_P / p.H_R
     u_P = wake.u_P
-    u_star = p.eps * (eta * p.kappa * (np.sqrt(np.maximum(u_P * u_P + propeller.jet, 0.0)) - u_P) + u_P)
+    u_star = p.eps * (eta * p.kappa * gain_in_race(u_P, propeller.jet) + u_P)
     u_bollard = 0.7 * np.pi * propeller.n * propeller.D_P * p.u_R0
     u_R = np.maximum(u_star, u_bollard)
     beta_R = flow.beta - p.l_R_ * flow.r_
-    gamma_R = where(beta_R > 0.0, p.gamma_Rp, p.gamma_Rn)
+    gamma_R = straightening_by_side(beta_R, p.gamma_Rp, p.gamma_Rn)
     v_R = -gamma_R * (flow.v_m + p.l_R_ * L * flow.r)
 
     delta_f = flap_angle(delta, p.flap_step, p.flap)

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..elementary import arctan2, cos, sin, where
 from ..quantities import Lanes, RudderOut
+from .inflow import gain_in_race, signed_root
 from .reaction import rudder_reaction
-from .reversible import signed_root
 
 STARBOARD, PORT = 1.0, -1.0
 """Sign of the angles by which a rudder turns outward, away from the other."""
@@ -152,7 +152,7 @@ def one_of_two(side, flow, ship, behind, reaction, delta, other, pair, p):
     one_minus_w_R = p.a_1 + (p.a_2 + (p.a_3 + p.a_4 * delta) * delta) * delta
     u_P = wake.u_P
     u_w = one_minus_w_R / (1.0 - wake.w_P) * u_P
-    u_jet = u_w + pair.k_x * (np.sqrt(np.maximum(u_P * u_P + propeller.jet, 0.0)) - u_P)
+    u_jet = u_w + pair.k_x * gain_in_race(u_P, propeller.jet)
     eta = propeller.D_P / pair.H_R
     race = signed_root(eta * u_jet * np.abs(u_jet) + (1.0 - eta) * u_w * np.abs(u_w))
     kept = quadratic(

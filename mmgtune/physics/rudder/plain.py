@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..elementary import arctan2, cos, sin, where
+from ..elementary import arctan2, cos, sin
 from ..quantities import Lanes, RudderOut
+from .inflow import gain_in_race, straightening_by_side
 from .reaction import plain_normal_force, rudder_reaction
 
 
@@ -37,10 +38,10 @@ def plain_rudder(flow, ship, wake, propeller, delta, p):
     L = ship.L_pp
     eta = propeller.D_P / p.H_R
     u_P = wake.u_P
-    u_jet = u_P + p.kappa * (np.sqrt(np.maximum(u_P * u_P + propeller.jet, 0.0)) - u_P)
+    u_jet = u_P + p.kappa * gain_in_race(u_P, propeller.jet)
     u_R = p.eps * np.sqrt(np.maximum(eta * u_jet * u_jet + (1.0 - eta) * u_P * u_P, 0.0))
     beta_R = flow.beta - p.l_R_ * flow.r_
-    gamma_R = where(beta_R > 0.0, p.gamma_Rp, p.gamma_Rn)
+    gamma_R = straightening_by_side(beta_R, p.gamma_Rp, p.gamma_Rn)
     v_R = flow.U * gamma_R * beta_R
 
     sin_delta = sin(delta)

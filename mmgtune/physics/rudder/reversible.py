@@ -7,6 +7,7 @@ import numpy as np
 from ..elementary import arctan2, cos, sin, where
 from ..propeller.coefficients import N_FLOOR
 from ..quantities import Lanes, RudderOut
+from .inflow import gain_in_race, signed_root
 from .reaction import plain_normal_force, rudder_reaction
 
 ASIDE = 0.05
@@ -35,11 +36,6 @@ class ReversibleRudder(NamedTuple):
     f_alpha: Lanes  # gradient of the normal force [1/rad]
 
 
-def signed_root(s):
-    """Square root with the sign of s: a velocity [m/s] from a signed square."""
-    return where(s < 0.0, -1.0, 1.0) * np.sqrt(np.abs(s))
-
-
 def reversible_rudder(flow, ship, wake, propeller, delta, p):
     """Rudder force: Yasukawa & Yoshimura 2015 ahead, Kitagawa et al. 2015 with the propeller braking.
 
@@ -58,7 +54,7 @@ def reversible_rudder(flow, ship, wake, propeller, delta, p):
     eta = propeller.D_P / p.H_R
     n_D = np.maximum(np.abs(propeller.n), N_FLOOR) * propeller.D_P
 
-    u_jet = u_P + p.kappa * (np.sqrt(np.maximum(u_P * u_P + jet, 0.0)) - u_P)
+    u_jet = u_P + p.kappa * gain_in_race(u_P, jet)
     pushing = p.eps * signed_root(eta * u_jet * np.abs(u_jet) + (1.0 - eta) * u_P * np.abs(u_P))
 
     u_2 = p.eps * u_P

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..elementary import arctan2, cos, sin, where
 from ..quantities import Lanes, RudderOut
+from .inflow import signed_root, straightening_by_side
 from .lift_drag import lift_and_drag
 from .reaction import rudder_reaction
 
@@ -54,9 +55,9 @@ def slip_rudder(flow, ship, wake, propeller, delta, p):
     race = eta * K * (K * ideal + (2.0 - K) * np.maximum(u_P, 0.0)) * excess
     C = where(delta > 0.0, p.C_stbd, p.C_port)
     squared = u_P * np.abs(u_P) + C * where(propeller.n > 0.0, race, 0.0)
-    u_R = p.eps * where(squared < 0.0, -1.0, 1.0) * np.sqrt(np.abs(squared))
+    u_R = p.eps * signed_root(squared)
     beta_R = flow.beta - p.l_R_ * flow.r_
-    gamma_R = where(beta_R > 0.0, p.gamma_Rp, p.gamma_Rn)
+    gamma_R = straightening_by_side(beta_R, p.gamma_Rp, p.gamma_Rn)
     v_R = flow.U * gamma_R * beta_R
     alpha_R = delta - arctan2(v_R, u_R)
     C_L, C_D = lift_and_drag(alpha_R, p.H_R * p.H_R / p.A_R, p.C_Q, p.C_D0, p.alpha_stall, p.stall_loss)
