@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -38,6 +38,13 @@ STOPPED = "The fit was stopped before its end: this is of its best so far, not o
 
 MISSED = 3.0
 """J of a sample on trials not used for tuning, over that on those that were, from which a fit misses them."""
+
+
+class Warned(NamedTuple):
+    """Something to know before trusting a fit: a code for programs, which stays, and a sentence for readers."""
+
+    code: str
+    words: str
 
 
 @dataclass(frozen=True)
@@ -222,45 +229,73 @@ class FitResult(Plotted):
 
     def warnings(self) -> list[str]:
         """What a reader must know before trusting the numbers."""
+        return [one.words for one in self.warned()]
+
+    def warned(self) -> list[Warned]:
+        """The same with the code of each."""
         found = []
         if self.interrupted:
-            found.append("The fit was interrupted; these are the best values so far, not an optimum.")
+            said = "The fit was interrupted; these are the best values so far, not an optimum."
+            found.append(Warned("interrupted", said))
         if self.diverged:
-            found.append(f"{self.diverged} candidates diverged during the search and were given up.")
-        found += self.oddities
-        found += [f"{words}." for words in in_words(self.profile.doubts())]
-        generated = sorted({c.trial.id for c in self.compared if c.trial.source == "generated"})
+            said = f"{self.diverged} candidates diverged during the search and were given up."
+            found.append(Warned("diverged", said))
+        found += [Warned("odd", words) for words in self.oddities]
+        found += [Warned("doubtful", f"{words}.") for words in in_words(self.profile.doubts())]
+        found += self._of_trials()
+        found += self._of_stated()
+        found += self._of_comparison()
+        return found
+
+    def _of_trials(self) -> list[Warned]:
+        """What is to be known of the trials."""
+        found = []
+        trials = [c.trial for c in self.compared]
+        generated = sorted({trial.id for trial in trials if trial.source == "generated"})
         if generated:
-            found.append(f"{len(generated)} of {len(self.compared)} trials are generated, not measured.")
+            said = f"{len(generated)} of {len(trials)} trials are generated, not measured."
+            found.append(Warned("generated", said))
         if self.J_free_start is not None and self.J_free_start < 0.5 * self.J:
-            found.append(
+            said = (
                 f"Of J = {self.J:.4g} on the tune trials {self.J - self.J_free_start:.4g} comes from starting "
                 "each trial at its noisy first sample; initial=estimated removes that."
             )
-        trials = [c.trial for c in self.compared]
+            found.append(Warned("initial", said))
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
-        found += [f"{capital(note)}." for note in around]
-        found += coverage_notes(Model(self.profile, self.ties), self.box.names, self.coverage)
-        found += held_words(self.profile, self.options, [c.trial for c in self.compared if c.role == "tune"])
+        found += [Warned("surroundings", f"{capital(note)}.") for note in around]
+        visited = coverage_notes(Model(self.profile, self.ties), self.box.names, self.coverage)
+        found += [Warned("coverage", words) for words in visited]
+        tuned_on = [c.trial for c in self.compared if c.role == "tune"]
+        found += [Warned("held", words) for words in held_words(self.profile, self.options, tuned_on)]
+        return found
+
+    def _of_stated(self) -> list[Warned]:
+        """What is to be known of stated indices."""
+        found = []
         never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})
         if never:
-            found.append(f"The tuned model never reaches: {', '.join(never)}.")
+            found.append(Warned("never-reached", f"The tuned model never reaches: {', '.join(never)}."))
         assumed = sum(one.assumed for one in self.stated)
         if assumed:
-            found.append(f"{assumed} of {len(self.stated)} stated indices have the tolerance that mmgtune assumes.")
+            said = f"{assumed} of {len(self.stated)} stated indices have the tolerance that mmgtune assumes."
+            found.append(Warned("assumed", said))
         if self.stated and self.compared:
-            found.append(self.verdict_of_stated())
+            found.append(Warned("stated", self.verdict_of_stated()))
+        return found
+
+    def _of_comparison(self) -> list[Warned]:
+        """What is to be known of how simulations of the trials were compared, and came out."""
+        found = []
         gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
         if gaps:
-            found.append(f"Gaps in these trials do not count: {', '.join(gaps)}.")
+            found.append(Warned("gaps", f"Gaps in these trials do not count: {', '.join(gaps)}."))
         lost = [c.trial.id for c in self.compared if c.motions["after"].diverged]
         if lost:
-            found.append(f"The tuned model diverges on: {', '.join(lost)}.")
+            found.append(Warned("lost", f"The tuned model diverges on: {', '.join(lost)}."))
         worse = [c.trial.id for c in self.compared if c.role == "test" and c.J["after"] > c.J["before"]]
         if worse:
-            found.append(
-                f"Worse than before on test trials: {', '.join(worse)}: the tuning does not carry over to them."
-            )
+            said = f"Worse than before on test trials: {', '.join(worse)}: the tuning does not carry over to them."
+            found.append(Warned("worse", said))
         return found
 
     def coefficients(self) -> list[dict[str, Any]]:
@@ -332,13 +367,15 @@ class FitResult(Plotted):
 
     def to_dict(self) -> dict[str, Any]:
         """The document of ``fit.json``, schema 1 (docs/formats.md)."""
+        warned = self.warned()
         return {
             "schema": SCHEMA,
             "kind": "fit",
             **self.provenance,
             "interrupted": self.interrupted,
             "verdict": self.verdict(),
-            "warnings": self.warnings(),
+            "warnings": [one.words for one in warned],
+            "warning_codes": [one.code for one in warned],
             "doubts": [one.to_dict() for one in self.profile.doubts()],
             "integrator": self.method,
             "J_tune": self.J_of("tune", "after"),

@@ -28,7 +28,7 @@ from .journal import finished, journalled
 from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
 from .optimum import edge_ridge
-from .result import FitResult
+from .result import FitResult, Warned
 from .robust import weigh_down
 from .run import fit
 from .setting import in_pieces, make_problem, make_setting
@@ -123,7 +123,11 @@ class SweepResult(Plotted):
 
     def warnings(self) -> list[str]:
         """What a reader must know first: of the best fit, or of the last where the sweep was stopped."""
-        return self.runs[-1 if self.interrupted else self.best].warnings()
+        return [one.words for one in self.warned()]
+
+    def warned(self) -> list[Warned]:
+        """The same with the code of each."""
+        return self.runs[-1 if self.interrupted else self.best].warned()
 
     def overfitting(self) -> dict[str, Any]:
         """Whether J rises on trials not used while it falls on those tuned to; not said of a sweep that was stopped."""
@@ -199,6 +203,7 @@ class SweepResult(Plotted):
             else [{"a_r": a, "J": J} for a, J in zip(self.widths, loo, strict=True)],
             "overfitting": self.overfitting(),
             "warnings": self.warnings(),
+            "warning_codes": [one.code for one in self.warned()],
             "doubts": [one.to_dict() for one in first.profile.doubts()],
             "citations": first.profile.cites(),
             "wall_s": self.wall_s,

@@ -20,7 +20,7 @@ _WORDS = {
     "regressed": "worse", "ok": "as good", "improved": "better", "not comparable": "not comparable",
     "skipped": "not measured",
 }  # fmt: skip
-_SAID = {"pass": "Passed", "FAIL": "Failed", "NOT COMPARABLE": "Not comparable", "COULD NOT RUN": "Could not run"}
+_SAID = {"pass": "Passed", "regressed": "Failed", "not comparable": "Not comparable"}
 _TONES = {"regressed": "bad", "improved": "good", "not comparable": "note"}
 _BARS = 14
 _FAR = 4.0
@@ -72,11 +72,9 @@ def _lead(data: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _verdict(data: Mapping[str, Any]) -> str:
-    text = " ".join(clean(data["sentence"]).split())
-    for said, words in _SAID.items():
-        if text.startswith(said):
-            return f"{words}: {text.removeprefix(said).strip()}"
-    return text
+    """What came out, in words for what the line of a log begins with: that ends at two spaces."""
+    said = "Could not run" if data["problems"] else _SAID[data["verdict"]]
+    return f"{said}: {' '.join(clean(data['sentence']).partition('  ')[2].split())}"
 
 
 def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
+from itertools import chain, repeat
 from typing import Any
 
 from ..profile.doubts import in_words
@@ -53,10 +54,11 @@ def ship_name(data: Mapping[str, Any]) -> str:
 
 
 def warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
-    """What a reader must know, less what the banner says already."""
-    said = bool(generated_banner(data["trials"]))
-    found = (sentence(text) for text in data.get("warnings") or ())
-    return tuple(text for text in found if not (said and text.endswith("trials are generated, not measured.")))
+    """What a reader must know, less what the banner says already; records of older versions have no codes."""
+    said = ("generated",) if generated_banner(data["trials"]) else ()
+    codes = chain(data.get("warning_codes") or (), repeat(""))
+    found = zip(data.get("warnings") or (), codes, strict=False)
+    return tuple(sentence(text) for text, code in found if code not in said)
 
 
 STOPPED = "The training was stopped before its end."

@@ -131,10 +131,7 @@ def _overfitting(data: Mapping[str, Any]) -> tuple[Prose, ...]:
     found = data.get("overfitting") or {}
     if not found.get("sentence"):
         return ()
-    sentence = clean(found["sentence"])
-    if found.get("found") and not sentence.startswith("Over-fitting"):
-        sentence = f"Over-fitting: {sentence}"
-    return (Prose((sentence,), tone="warning" if found.get("found") else ""),)
+    return (Prose((clean(found["sentence"]),), tone="warning" if found.get("found") else ""),)
 
 
 def _find(run: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -148,7 +148,9 @@ def test_ctrl_c_saves_the_best_so_far_and_can_be_continued(tmp_path):
     assert document["interrupted"]
     assert document["J_tune"] < document["J_tune_before"]
     assert document["restarts"][-1]["stop"] == "interrupted"
-    assert any("interrupted" in warning for warning in document["warnings"])
+    said = dict(zip(document["warning_codes"], document["warnings"], strict=True))
+    assert "interrupted" in said["interrupted"]
+    assert "generated, not measured" in said["generated"]
     assert load_profile(tmp_path / "run" / "profile.toml").value("hull.R_0") == document["theta"]["hull.R_0"]
     resumed = run(*search, "--json", "--resume", "--out", "run", cwd=tmp_path)
     assert resumed.code == 0

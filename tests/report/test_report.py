@@ -67,6 +67,11 @@ def test_order_of_content(page: str) -> None:
     assert verdict < page.index("generated, not measured") < page.index('class="card') < page.index("<section")
 
 
+def test_a_warning_that_the_banner_says_is_left_out_by_its_code(page: str) -> None:
+    assert "Trials start at noisy samples" in page
+    assert "as their source says" not in page
+
+
 def test_page_is_one_file_with_a_strict_policy(page: str) -> None:
     outline = Outline(page)
     assert all(source.startswith(("#", "data:,")) for source in outline.sources)
@@ -182,7 +187,7 @@ def test_sweep(sweep_folder: Path) -> None:
     for value in ("31.4 → 5.2 m", "12 → 1.3°"):  # the same figure on the card
         assert value in page
     assert "Test trials: least off track at a_r = 0.5 (5.2 m) and least off heading at a_r = 0.5 (1.3°)" in page
-    assert "Over-fitting: From a_r = 0.5 to 0.6" in page
+    assert "Over-fitting from a_r = 0.6" in page
     assert 'href="./ar_0.5/report.html"' in page
     assert (sweep_folder / "ar_0.5" / "report.html").is_file()
     assert "w_P0, C_w" in page
