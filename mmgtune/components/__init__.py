@@ -5,13 +5,15 @@ package.  A new hull, wake, propeller or rudder is one new file there and one en
 """
 
 from .arrangements import ARRANGEMENTS
-from .component import Arrangement, Component, Field
+from .component import AT_LEAST_0, AT_MOST_0, Arrangement, Component, Field
 from .registry import COMPONENTS, KINDS, UNTAGGED, find, find_arrangement, split_name, tags
 from .ship import ABOVE_WATER, SHIP
 
 __all__ = [
     "ABOVE_WATER",
     "ARRANGEMENTS",
+    "AT_LEAST_0",
+    "AT_MOST_0",
     "COMPONENTS",
     "KINDS",
     "SHIP",

@@ -9,6 +9,9 @@ from typing import Any
 from ..displayed import Brief
 from ..inputs import INPUTS, Input, Role
 
+AT_LEAST_0, AT_MOST_0 = -1e-12, 1e-12
+"""Limits of a field that let 0 itself in, where a limit of 0 would not."""
+
 
 @dataclass(frozen=True, repr=False)
 class Field(Brief):
@@ -18,7 +21,7 @@ class Field(Brief):
     unit     SI unit, "-" for a pure number, "prime" for the prime system of the MMG standard method
     default  value where a profile leaves it out; None if the profile must give it, which holds for every term of a
              force: a term that a source does not have is written as 0
-    low, high  impossible at or beyond these (exclusive), None where anything goes
+    low, high  impossible at or beyond these (exclusive), None where anything goes; AT_LEAST_0 and AT_MOST_0 let 0 in
     choices  words a profile may write instead of the number each stands for
     table    0 for a number; else the number of values of a table
     derived  computed from other numbers of the profile where it is left out

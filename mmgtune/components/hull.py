@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..physics.hull.cubic import CubicHull, cubic_hull
 from ..physics.hull.derivatives import DerivativesHull, derivatives_hull
 from ..physics.hull.unified import UnifiedHull, unified_hull
-from .component import Component, Field
+from .component import AT_LEAST_0, Component, Field
 from .sources import INOUE, KIJIMA, MATHIOUDAKIS, MIYAUCHI, SUYAMA, YASUKAWA, YOSHIMURA
 
 CUBIC_HULL = Component(
@@ -71,9 +71,9 @@ UNIFIED_HULL = Component(
         "Y_r": Field("sway force, r term", "prime"),
         "N_v": Field("yaw moment, v term", "prime"),
         "N_r": Field("yaw moment, r term", "prime"),
-        "C_D": Field("cross-flow drag coefficient", low=-1e-12),
-        "C_rY": Field("weight of the yaw rate in the cross flow, for the sway force", low=-1e-12),
-        "C_rN": Field("weight of the yaw rate in the cross flow, for the yaw moment", low=-1e-12),
+        "C_D": Field("cross-flow drag coefficient", low=AT_LEAST_0),
+        "C_rY": Field("weight of the yaw rate in the cross flow, for the sway force", low=AT_LEAST_0),
+        "C_rN": Field("weight of the yaw rate in the cross flow, for the yaw moment", low=AT_LEAST_0),
     },
 )
 

@@ -6,7 +6,7 @@ from ..physics.rudder.flapped import FlappedRudder, flapped_rudder
 from ..physics.rudder.plain import PlainRudder, plain_rudder
 from ..physics.rudder.reversible import ReversibleRudder, reversible_rudder
 from ..physics.rudder.slip import SlipRudder, slip_rudder
-from .component import Component, Field
+from .component import AT_LEAST_0, Component, Field
 from .sources import KIJIMA, MATHIOUDAKIS, MIYAUCHI, OKUDA, SUYAMA, YASUKAWA
 
 _RUDDER_GEOMETRY = {
@@ -17,13 +17,13 @@ _RUDDER_GEOMETRY = {
     "a_H": Field("increase of the rudder force by the hull", low=-1.0, high=3.0),
     "x_H_": Field("position of that increase, over L_pp", low=-3.0, high=3.0),
     "eps": Field("wake ratio between propeller and rudder position", low=0.0),
-    "kappa": Field("propeller race acceleration", low=-1e-12),
+    "kappa": Field("propeller race acceleration", low=AT_LEAST_0),
 }
 
 _RUDDER_INFLOW = {
     "l_R_": Field("effective position of the rudder in yaw, over L_pp", low=-5.0, high=5.0),
-    "gamma_Rp": Field("flow straightening, effective drift angle positive", low=-1e-12),
-    "gamma_Rn": Field("flow straightening, effective drift angle negative", low=-1e-12),
+    "gamma_Rp": Field("flow straightening, effective drift angle positive", low=AT_LEAST_0),
+    "gamma_Rn": Field("flow straightening, effective drift angle negative", low=AT_LEAST_0),
 }
 
 FLAPPED_RUDDER = Component(
@@ -35,7 +35,7 @@ FLAPPED_RUDDER = Component(
     cites=(SUYAMA, OKUDA),
     fields={
         **_RUDDER_GEOMETRY,
-        "u_R0": Field("inflow from the propeller at bollard condition", low=-1e-12),
+        "u_R0": Field("inflow from the propeller at bollard condition", low=AT_LEAST_0),
         **_RUDDER_INFLOW,
         "f_a0": Field("normal force gradient, flap amidships", "1/rad", low=0.0),
         "f_a2": Field("normal force gradient, flap angle squared term", "1/rad^3"),
@@ -70,7 +70,7 @@ REVERSIBLE_RUDDER = Component(
     fields={
         **_RUDDER_GEOMETRY,
         **_RUDDER_INFLOW,
-        "k_reverse": Field("propeller race against the motion of the ship", low=-1e-12),
+        "k_reverse": Field("propeller race against the motion of the ship", low=AT_LEAST_0),
         "C_PR": Field("loss of inflow behind a braking propeller"),
         "f_alpha": Field("normal force gradient", "1/rad", low=0.0),
     },
@@ -94,10 +94,10 @@ SLIP_RUDDER = Component(
         "C_port": Field("gain of the slipstream, rudder to port", low=0.0, high=5.0),
         "C_stbd": Field("gain of the slipstream, rudder to starboard", low=0.0, high=5.0),
         **_RUDDER_INFLOW,
-        "C_Q": Field("cross-flow coefficient of the rudder", low=-1e-12, high=5.0),
-        "C_D0": Field("drag of the rudder at zero lift", low=-1e-12, high=1.0),
+        "C_Q": Field("cross-flow coefficient of the rudder", low=AT_LEAST_0, high=5.0),
+        "C_D0": Field("drag of the rudder at zero lift", low=AT_LEAST_0, high=1.0),
         "alpha_stall": Field("inflow angle at which lift begins to be lost", "rad", low=0.0, high=1.5),
-        "stall_loss": Field("share of the circulatory lift that is lost in stall", low=-1e-12, high=1.0),
+        "stall_loss": Field("share of the circulatory lift that is lost in stall", low=AT_LEAST_0, high=1.0),
     },
 )
 

@@ -13,7 +13,7 @@ from ..physics.rudder.kang import (
     rudder_of_pair_to_port,
     rudder_of_pair_to_starboard,
 )
-from .component import Component, Field, polynomial
+from .component import AT_LEAST_0, Component, Field, polynomial
 from .sources import KANG
 
 _IN_J = ("constant term", "J term", "J^2 term")
@@ -60,7 +60,7 @@ RUDDER_PAIR = Component(
         "A_R": Field("area of each rudder", "m^2", low=0.0, high=500.0),
         "H_R": Field("rudder span", "m", low=0.0, high=30.0),
         "x_R_": Field("longitudinal position of the rudders, over L_pp", low=-1.0, high=1.0),
-        "k_x": Field("share of the propeller race's gain of velocity that reaches a rudder", low=-1e-12),
+        "k_x": Field("share of the propeller race's gain of velocity that reaches a rudder", low=AT_LEAST_0),
         **polynomial("steering resistance deduction t_R", "e", _IN_J),
         **polynomial("increase a_H of the rudder force by the hull", "f", _IN_J),
         "a_H_low": Field("smallest a_H", low=-1.0, high=3.0),
@@ -114,7 +114,7 @@ def _one_of_two(kind: str, words: str, function: Callable[..., Any]) -> Componen
                 for j, term in enumerate(_STRAIGHTENING)
             },
             **{
-                f"gamma_{i}": Field(f"largest flow straightening, {case}", low=-1e-12, high=2.0)
+                f"gamma_{i}": Field(f"largest flow straightening, {case}", low=AT_LEAST_0, high=2.0)
                 for i, case in enumerate(_CASES, start=1)
             },
             **{

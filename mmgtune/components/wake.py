@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..physics.wake.asymmetric import AsymmetricWake, asymmetric_wake
 from ..physics.wake.exponential import ExponentialWake, exponential_wake
 from ..physics.wake.quadratic import QuadraticWake, quadratic_wake
-from .component import Component, Field
+from .component import AT_LEAST_0, AT_MOST_0, Component, Field
 from .sources import MIYAUCHI, OKUDA, SUYAMA, YASUKAWA
 
 EXPONENTIAL_WAKE = Component(
@@ -17,7 +17,7 @@ EXPONENTIAL_WAKE = Component(
     cites=(SUYAMA, OKUDA),
     fields={
         "w_P0": Field("wake fraction at zero inflow angle", low=-1.0, high=1.0),
-        "C_w": Field("fading of the wake with the inflow angle squared", "1/rad^2", high=1e-12),
+        "C_w": Field("fading of the wake with the inflow angle squared", "1/rad^2", high=AT_MOST_0),
         "l_P_": Field("longitudinal position of the propeller, over L_pp", low=-1.0, high=1.0),
     },
 )
@@ -31,7 +31,7 @@ ASYMMETRIC_WAKE = Component(
     cites=(YASUKAWA,),
     fields={
         "w_P0": Field("wake fraction at zero inflow angle", low=-1.0, high=1.0),
-        "C_1": Field("rate of change of the wake with the inflow angle", "1/rad", low=-1e-12),
+        "C_1": Field("rate of change of the wake with the inflow angle", "1/rad", low=AT_LEAST_0),
         "C_2p": Field("end value of (1-w_P)/(1-w_P0), inflow angle positive", low=0.0),
         "C_2n": Field("end value of (1-w_P)/(1-w_P0), inflow angle negative", low=0.0),
         "x_P_": Field("longitudinal position of the propeller, over L_pp", low=-1.0, high=1.0),

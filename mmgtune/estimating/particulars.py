@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits
-from ..components import ABOVE_WATER, SHIP, Field
+from ..components import ABOVE_WATER, AT_LEAST_0, SHIP, Field
 from ..errors import Problem, ProfileError
 from ..physics.constants import GRAVITY
 from ..physics.quantities import ABOVE_WATER as GEOMETRY
+from ..profile.possible import limits_in_words
 from ..profile.reading import APPROACH, IDENTIFIER, STEERING_GEAR
 from ..resources import must_be_name, particulars, particulars_names, taken
 from ..toml_reading import TomlReader, toml_of
@@ -34,9 +35,9 @@ FIELDS: dict[str, dict[str, Field]] = {
         "C_WP": Field("waterplane coefficient", low=0.4, high=1.0),
         "lcb": Field("centre of buoyancy forward of midship, in % of L_pp", low=-10.0, high=10.0),
         "C_st": Field("shape of the stern: -25 pram, -10 V, 0 normal, 10 U", low=-30.0, high=15.0),
-        "A_BT": Field("transverse area of the bulb", "m^2", low=-1e-12, high=500.0),
-        "h_B": Field("centre of the bulb above the keel", "m", low=-1e-12, high=30.0),
-        "A_T": Field("immersed area of the transom at rest", "m^2", low=-1e-12, high=1000.0),
+        "A_BT": Field("transverse area of the bulb", "m^2", low=AT_LEAST_0, high=500.0),
+        "h_B": Field("centre of the bulb above the keel", "m", low=AT_LEAST_0, high=30.0),
+        "A_T": Field("immersed area of the transom at rest", "m^2", low=AT_LEAST_0, high=1000.0),
     },
     "propeller": {
         "D_P": Field("propeller diameter", "m", low=0.0, high=20.0),
@@ -184,9 +185,7 @@ class _Reader(TomlReader):
         low, high = known.low, known.high
         # Infinite numbers and NaN pass no comparison with limits that are there.
         if not (-1e12 < number < 1e12) or (low is not None and number <= low) or (high is not None and number >= high):
-            ends = [f"above {low:g}" if low is not None else "", f"below {high:g}" if high is not None else ""]
-            unit = "" if known.unit == "-" else f" {known.unit}"
-            why = f"{known.label or key} must be {' and '.join(end for end in ends if end) or 'finite'}{unit}"
+            why = f"{known.label or key} must be {limits_in_words(known) or 'finite'}"
             self.problem(f"'{section}.{key}' = {number:g} is impossible", section, key, why, "check number and unit")
             return None
         return number

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import math
 
-from ..components import Field
+from ..components import AT_LEAST_0, AT_MOST_0, Field
 from ..effects import Parameter
 from ..units import DIMENSIONLESS
-
-ALMOST_ZERO = 1e-12
-"""Limits that are no farther from 0 let 0 itself in."""
 
 
 def impossible(name: str, field: Field, number: float) -> dict[str, str] | None:
@@ -23,7 +20,7 @@ def impossible(name: str, field: Field, number: float) -> dict[str, str] | None:
         why, fix = "only finite numbers can be simulated", "check the number; a large one may lack a point"
         return {"what": f"'{name}' is {number}", "why": why, "fix": fix}
     if (field.low is not None and number <= field.low) or (field.high is not None and number >= field.high):
-        why = f"{field.label or name.rpartition('.')[2]} must be {_limits(field)}"
+        why = f"{field.label or name.rpartition('.')[2]} must be {limits_in_words(field)}"
         return {"what": f"'{name}' = {number:g} is impossible", "why": why, "fix": "check number and unit"}
     return None
 
@@ -33,12 +30,12 @@ def may_be_infinite(field: Field) -> bool:
     return isinstance(field, Parameter) and math.isinf(field.null)
 
 
-def _limits(field: Field) -> str:
-    """What a coefficient may be, in words."""
+def limits_in_words(field: Field) -> str:
+    """What a coefficient may be, "" where it has no limits."""
     low, high, unit = field.low, field.high, "" if field.unit in DIMENSIONLESS else f" {field.unit}"
     words = []
     if low is not None:
-        words.append("0 or more" if -ALMOST_ZERO <= low < 0.0 else f"above {low:g}{unit}")
+        words.append("0 or more" if AT_LEAST_0 <= low < 0.0 else f"above {low:g}{unit}")
     if high is not None:
-        words.append("0 or less" if 0.0 < high <= ALMOST_ZERO else f"below {high:g}{unit}")
+        words.append("0 or less" if 0.0 < high <= AT_MOST_0 else f"below {high:g}{unit}")
     return " and ".join(words)
