@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -238,26 +239,13 @@ class Compiled:
         if (whole := self._among_all(model, work)) is not None:
             model, theta = whole.model, whole.theta(theta)
         blocks = make_blocks(cases, n_candidates, paired)
-        n_blocks = len(blocks.case_of)
-        first = first_states(model, theta, cases, initial, paired)
-        start = first[blocks.case_of, blocks.candidate_of].transpose(0, 2, 1)
-        cost, fastest2 = np.empty((n_blocks, WIDTH)), np.empty((n_blocks, WIDTH))
-        end = np.empty((n_blocks, N_STATES * WIDTH))
-        states = np.empty((n_cases, n_candidates, cases.t.shape[1], N_STATES) if keep_states else (1, 1, 1, 1))
-        columns = n_candidates if blocks.mixed else blocks.thetas.size
-        residuals = np.empty((cases.n_residuals, columns) if keep_residuals else (1, 1))
-        rows = cases.rows if keep_residuals else np.zeros((1, 1, 1), dtype=np.int64)
-        theta_of = blocks.theta_of
-        if theta.ndim == 3:
-            thetas = theta[:, blocks.case_of, blocks.candidate_of].transpose(1, 0, 2).reshape(n_blocks, -1)
-            theta_of = np.arange(n_blocks)
-        else:
-            thetas = theta[:, blocks.thetas].transpose(1, 0, 2).reshape(len(blocks.thetas), -1)
-        fixed = (
-            np.ascontiguousarray(thetas),
+        thetas, theta_of = _thetas_of(blocks, theta)
+        start = first_states(model, theta, cases, initial, paired)[blocks.case_of, blocks.candidate_of]
+        read = (
+            np.ascontiguousarray(thetas).reshape(len(thetas), -1),
             theta_of,
-            present(model, IN_KERNEL, thetas.reshape(len(thetas), -1, WIDTH)),
-            np.ascontiguousarray(start).reshape(n_blocks, -1),
+            present(model, IN_KERNEL, thetas),
+            np.ascontiguousarray(start.transpose(0, 2, 1)).reshape(len(start), -1),
             blocks.case_of,
             blocks.candidate_of,
             blocks.mixed,
@@ -268,31 +256,72 @@ class Compiled:
             position,
             share,
             integrator.substeps,
-            rows,
+            cases.rows if keep_residuals else np.zeros((1, 1, 1), dtype=np.int64),
         )
-        results = (keep_states, keep_residuals, cost, fastest2, end, states, residuals)
-        kernel = self.kernel(model)
-        if work < WORTH_A_THREAD or n_blocks == 1 or cores() == 1:
-            kernel(*fixed, 0, n_blocks, *results)
-        else:
-            cuts = np.linspace(0, n_blocks, min(n_blocks, 4 * cores()) + 1).astype(int)
-            jobs = [_pool().submit(kernel, *fixed, int(a), int(b), *results) for a, b in pairwise(cuts)]
-            for job in jobs:
-                job.result()
-
-        def by_lane(values: FloatArray) -> FloatArray:
-            """(n_cases, n_candidates, ...) of (n_blocks, WIDTH, ...)."""
-            if not blocks.mixed:
-                return values.reshape(n_cases, -1, *values.shape[2:])[:, :n_candidates]
-            ordered = np.empty((n_cases, n_candidates, *values.shape[2:]))
-            ordered[blocks.case_of, blocks.candidate_of] = values
-            return ordered
-
-        last = by_lane(end.reshape(n_blocks, N_STATES, WIDTH).transpose(0, 2, 1))
+        written = _Written.for_blocks(blocks, cases, n_candidates, keep_states, keep_residuals)
+        _share_out(self.kernel(model), len(blocks.case_of), work, read, (keep_states, keep_residuals, *written))
+        last = written.end.reshape(-1, N_STATES, WIDTH).transpose(0, 2, 1)
         return finish(
-            by_lane(cost),
-            by_lane(fastest2),
-            last,
-            states if keep_states else None,
-            residuals[:, :n_candidates] if keep_residuals else None,
+            _by_lane(written.cost, blocks, n_cases, n_candidates),
+            _by_lane(written.fastest2, blocks, n_cases, n_candidates),
+            _by_lane(last, blocks, n_cases, n_candidates),
+            written.states if keep_states else None,
+            written.residuals[:, :n_candidates] if keep_residuals else None,
         )
+
+
+def _thetas_of(blocks: Blocks, theta: FloatArray) -> tuple[FloatArray, IntArray]:
+    """(n, n_rows, WIDTH) coefficients of blocks, and which of these each block has.
+
+    theta  (n_rows, n_candidates), or (n_rows, n_cases, n_candidates) where every case has its own
+    """
+    if theta.ndim == 3:
+        return theta[:, blocks.case_of, blocks.candidate_of].transpose(1, 0, 2), np.arange(len(blocks.case_of))
+    return theta[:, blocks.thetas].transpose(1, 0, 2), blocks.theta_of
+
+
+class _Written(NamedTuple):
+    """What a kernel writes into, in the order of its arguments; what is not to be kept is a single number."""
+
+    cost: FloatArray  # (n_blocks, WIDTH)
+    fastest2: FloatArray  # (n_blocks, WIDTH)
+    end: FloatArray  # (n_blocks, n_states * WIDTH)
+    states: FloatArray  # (n_cases, n_candidates, n_samples, n_states)
+    residuals: FloatArray  # (n_residuals, n_columns)
+
+    @classmethod
+    def for_blocks(
+        cls, blocks: Blocks, cases: Cases, n_candidates: int, keep_states: bool, keep_residuals: bool
+    ) -> _Written:
+        """Room for the results of blocks."""
+        n_blocks = len(blocks.case_of)
+        columns = n_candidates if blocks.mixed else blocks.thetas.size
+        return cls(
+            np.empty((n_blocks, WIDTH)),
+            np.empty((n_blocks, WIDTH)),
+            np.empty((n_blocks, N_STATES * WIDTH)),
+            np.empty((len(cases), n_candidates, cases.t.shape[1], N_STATES) if keep_states else (1, 1, 1, 1)),
+            np.empty((cases.n_residuals, columns) if keep_residuals else (1, 1)),
+        )
+
+
+def _share_out(
+    kernel: Callable[..., None], n_blocks: int, work: float, read: tuple[object, ...], written: tuple[object, ...]
+) -> None:
+    """Run a kernel over all blocks, on several cores where that is worth it; work in stages of lane-steps."""
+    if work < WORTH_A_THREAD or n_blocks == 1 or cores() == 1:
+        kernel(*read, 0, n_blocks, *written)
+        return
+    cuts = np.linspace(0, n_blocks, min(n_blocks, 4 * cores()) + 1).astype(int)
+    jobs = [_pool().submit(kernel, *read, int(a), int(b), *written) for a, b in pairwise(cuts)]
+    for job in jobs:
+        job.result()
+
+
+def _by_lane(values: FloatArray, blocks: Blocks, n_cases: int, n_candidates: int) -> FloatArray:
+    """(n_cases, n_candidates, ...) of (n_blocks, WIDTH, ...)."""
+    if not blocks.mixed:
+        return values.reshape(n_cases, -1, *values.shape[2:])[:, :n_candidates]
+    ordered = np.empty((n_cases, n_candidates, *values.shape[2:]))
+    ordered[blocks.case_of, blocks.candidate_of] = values
+    return ordered
