@@ -271,7 +271,6 @@ class PhysicsPredictor(Brief):
         result = get_backend(self.backend).run(
             self.model, self.theta, cases, integrator=self.integrator, keep_states=True
         )
-        assert result.states is not None  # asked for
         return Prediction(result.states, result.diverged)
 
     @property

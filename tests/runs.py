@@ -49,7 +49,6 @@ def states(
     result = get_backend(backend).run(
         model, model.matrix() if theta is None else theta, cases, integrator=integrator, keep_states=True
     )
-    assert result.states is not None
     return result.states
 
 

@@ -139,16 +139,16 @@ class LaneResult:
 
     cost      (n_cases, n_candidates) sum of weight * (state - target)^2; inf where diverged
     diverged  (n_cases, n_candidates) bool
-    states    (n_cases, n_candidates, T, 6) as the sensors show them, None unless asked for; after the end of a case
-              the last
-    residuals (n_residuals, n_candidates) root of weight * (state - target), None unless asked for; by case, sample
+    states    (n_cases, n_candidates, T, 6) as the sensors show them, of no sample unless asked for; after the end of a
+              case the last
+    residuals (n_residuals, n_candidates) root of weight * (state - target), no rows unless asked for; by case, sample
               and channel; cost is the sum of their squares
     """
 
     cost: FloatArray
     diverged: BoolArray
-    states: FloatArray | None = None
-    residuals: FloatArray | None = None
+    states: FloatArray
+    residuals: FloatArray
 
 
 def lanes_of(theta: FloatArray, n_cases: int, paired: bool) -> FloatArray:
@@ -192,7 +192,15 @@ def finish(
     states: FloatArray | None = None,
     residuals: FloatArray | None = None,
 ) -> LaneResult:
-    """The result, with diverged lanes marked; last (n_cases, n_candidates, 6), fastest2 squared speed [m^2/s^2]."""
+    """The result, with diverged lanes marked; last (n_cases, n_candidates, 6), fastest2 squared speed [m^2/s^2].
+
+    states, residuals  None where they were not asked for
+    """
     with np.errstate(invalid="ignore"):
         sound = np.isfinite(last).all(axis=-1) & np.isfinite(cost) & (fastest2 < SPEED_LIMIT**2)
-    return LaneResult(np.where(sound, cost, np.inf), ~sound, states, residuals)
+    return LaneResult(
+        np.where(sound, cost, np.inf),
+        ~sound,
+        np.empty((*cost.shape, 0, len(STATES))) if states is None else states,
+        np.empty((0, cost.shape[1])) if residuals is None else residuals,
+    )

@@ -192,7 +192,6 @@ class FitProblem:
             integrator=self.integrator,
             keep_states=True,
         )
-        assert result.states is not None  # asked for
         return Prediction(result.states, result.diverged)
 
     def costs(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
@@ -252,7 +251,6 @@ class FitProblem:
                 integrator=self.integrator,
                 keep_residuals=True,
             )
-            assert result.residuals is not None  # asked for
             out[: self.n_residuals, rows] = result.residuals
             out[: self.n_residuals, rows][:, result.diverged.any(axis=0)] = np.inf
         return out.T

@@ -162,7 +162,6 @@ class HybridPredictor:
         run = NumpyLanes(self.lanes).run(
             self.model, self.model.matrix(), cases, integrator=self.integrator, keep_states=True
         )
-        assert run.states is not None  # asked for
         return Prediction(run.states, run.diverged)
 
     @property

@@ -85,7 +85,6 @@ class Windowed:
     def _raw(self, z: FloatArray) -> FloatArray:
         theta = self.model.matrix(self.room.names, self.room.values(z))
         found = self.backend.run(self.model, theta, self.cases, integrator=self.integrator, keep_residuals=True)
-        assert found.residuals is not None  # asked for
         rows = np.array(found.residuals)
         rows[:, found.diverged.any(axis=0)] = np.nan
         return rows
@@ -129,7 +128,6 @@ def make_windowed(
     started[:, 1 + np.arange(6), np.arange(6)] += sigma
     theta = np.repeat(model.matrix(room.names, room.values(np.zeros((len(room), 1)))), 7, axis=1)
     found = backend.run(model, theta, cases, initial=started, integrator=integrator, keep_residuals=True)
-    assert found.residuals is not None  # asked for
     with np.errstate(invalid="ignore"):
         by_start = found.residuals[:, 1:] - found.residuals[:, :1]
     whitened = []
