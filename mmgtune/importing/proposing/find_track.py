@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,54 +34,106 @@ _DIVIDER = re.compile(r"[./]")
 """Between the parts of a name such as pose.position.x."""
 
 
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What logs show of a motion with time in one unit.
+
+    scores, words  by reading: what speaks for it in all logs, and in words
+    windows        of each log
+    agreeing       how many of yaw rate and velocities are what they must be with the likeliest reading
+    """
+
+    unit: str
+    scores: Mapping[Track, float]
+    words: Mapping[Track, str]
+    windows: Sequence[Windows]
+    agreeing: float
+
+    @property
+    def likeliest(self) -> float:
+        """Score of the likeliest reading, 0 where there is none."""
+        return max(self.scores.values(), default=0.0)
+
+    @property
+    def explained(self) -> float:
+        """How much fits with time in this unit."""
+        return self.likeliest + 2.0 * self.agreeing
+
+
 def position_and_heading(find: Finder) -> None:
-    best: tuple[float, str, dict[Track, float], dict[Track, str], list[Windows]] | None = None
-    scale = [units.factors("m").get(find.units_said[k], 1.0) for k in range(len(find.first.names))]
-    candidates_ = [k for k in find.numeric if find.said[k] not in (ORDER, OTHER, ROLL, TIME)]
-    for unit in likely_units(find.first, find.clock):
-        windows = [
-            Windows(in_seconds(one, find.clock, unit), [n * f for n, f in zip(one.numbers, scale, strict=True)])
-            for one in find.samples
-        ]
-        scores: dict[Track, float] = defaultdict(float)
-        words: dict[Track, str] = {}
-        for sample, w in zip(find.samples, windows, strict=True):
-            if not w.enough:
-                continue
-            for track, (score, word) in tracks(w, sample, find.said, candidates_).items():
-                if find.said[track.psi] != "psi" and _against_its_name(find, track):
-                    continue
-                scores[track] += score
-                words.setdefault(track, word)
-        agreeing = fits(find, scores, windows)
-        total = max(scores.values(), default=0.0) + 2.0 * agreeing
-        find.readings[unit] = max(scores.values(), default=0.0) / len(find.samples) + 2.0 * agreeing
-        # The usual unit, which comes first, unless another one explains far more.
-        if scores and (best is None or total > best[0] + CLEARLY):
-            best = total, unit, dict(scores), words, windows
-        if agreeing and unit == find.clock.unit:
-            break  # the unit that the name says is right
-    if best is None:
+    """Find the position, the heading and the unit of time together, by which course follows which heading."""
+    motion = _likeliest_motion(find)
+    if motion is None:
         find.unit = likely_units(find.first, find.clock)[0]
         time_unit(find)
         find.notes.append("the motion shows neither position nor heading: what follows is by names alone")
         if not {"x", "y", "latitude", "longitude"} & set(find.said):
             find.notes.append("no column is called a position, and a trial needs the track: have it exported too")
         return
-    _, find.unit, scores, words, windows = best
+    find.unit = motion.unit
     time_unit(find)
-    track, course, led = _beside_the_course(find, scores, windows)
-    find.looks = [Look(s, w, track) for s, w in zip(find.samples, windows, strict=True) if w.enough]
-    others = [one for one in scores if (one.x, one.y, one.psi) != (track.x, track.y, track.psi) and one.psi != course]
-    rival = max((scores[one] for one in others), default=0.0)
-    mirrored = max((v for one, v in scores.items() if one.left != track.left and one.psi == track.psi), default=0.0)
-    clear = scores[track] > 1.1 * rival
-    confidence = SURE if clear and scores[track] > 0.45 * len(find.looks) else LIKELY
+    track, course, led = _beside_the_course(find, motion.scores, motion.windows)
+    find.looks = [Look(s, w, track) for s, w in zip(find.samples, motion.windows, strict=True) if w.enough]
     if find.said[track.psi] == "cog":  # that the course follows the course is no evidence
         find.notes.append(
             f"no heading is found: {find.shown(track.psi)}, the course over ground, is taken for it, which lacks the "
             "drift angle of a ship that turns"
         )
+    _add_columns(find, track, _confidence(find, motion.scores, track, course), motion.words, led)
+    _doubt_mirror_image(find, motion.scores, track)
+
+
+def _likeliest_motion(find: Finder) -> Motion | None:
+    """The motion with time in the usual unit, or another one that explains far more; None where none shows.
+
+    Notes in ``find.readings`` how well it fits in each unit tried.
+    """
+    best: Motion | None = None
+    for unit in likely_units(find.first, find.clock):
+        motion = _motion_with(find, unit)
+        find.readings[unit] = motion.likeliest / len(find.samples) + 2.0 * motion.agreeing
+        # The usual unit, which comes first, unless another one explains far more.
+        if motion.scores and (best is None or motion.explained > best.explained + CLEARLY):
+            best = motion
+        if motion.agreeing and unit == find.clock.unit:
+            break  # the unit that the name says is right
+    return best
+
+
+def _motion_with(find: Finder, unit: str) -> Motion:
+    """What all logs together show with time in a unit."""
+    scale = [units.factors("m").get(find.units_said[k], 1.0) for k in range(len(find.first.names))]
+    among = [k for k in find.numeric if find.said[k] not in (ORDER, OTHER, ROLL, TIME)]
+    windows = [
+        Windows(in_seconds(one, find.clock, unit), [n * f for n, f in zip(one.numbers, scale, strict=True)])
+        for one in find.samples
+    ]
+    scores: dict[Track, float] = defaultdict(float)
+    words: dict[Track, str] = {}
+    for sample, w in zip(find.samples, windows, strict=True):
+        if not w.enough:
+            continue
+        for track, (score, word) in tracks(w, sample, find.said, among).items():
+            if find.said[track.psi] != "psi" and _against_its_name(find, track):
+                continue
+            scores[track] += score
+            words.setdefault(track, word)
+    return Motion(unit, dict(scores), words, windows, fits(find, scores, windows))
+
+
+def _confidence(find: Finder, scores: Mapping[Track, float], track: Track, course: int | None) -> str:
+    """How sure a reading is, by what speaks for those of other columns; that of the course itself is no other."""
+    others = [one for one in scores if (one.x, one.y, one.psi) != (track.x, track.y, track.psi) and one.psi != course]
+    rival = max((scores[one] for one in others), default=0.0)
+    clear = scores[track] > 1.1 * rival
+    return SURE if clear and scores[track] > 0.45 * len(find.looks) else LIKELY
+
+
+def _add_columns(find: Finder, track: Track, confidence: str, words: Mapping[Track, str], led: Sequence[str]) -> None:
+    """Take the columns of a reading for position and heading, each with what speaks for it.
+
+    led  what tells the heading from the course of the positions, in words
+    """
     unit = next((find.units_said[k] for k in (track.x, track.y) if find.units_said[k] in units.factors("m")), "")
     keys = keys_of(track, find.first, unit or "m")
     speed = np.median([one.usual_speed for one in find.looks])
@@ -105,6 +157,11 @@ def position_and_heading(find: Finder) -> None:
             said.append("its cells are in degrees and minutes")
         doubtful = quantity == "psi" and find.said[column] == "cog"
         find.add(Guess(quantity, column, own, tuple(said), LIKELY if doubtful else confidence))
+
+
+def _doubt_mirror_image(find: Finder, scores: Mapping[Track, float], track: Track) -> None:
+    """Say where neither motion nor names tell a track from its mirror image, whose turns are to the other side."""
+    mirrored = max((v for one, v in scores.items() if one.left != track.left and one.psi == track.psi), default=0.0)
     if (
         not track.geographic
         and not {find.said[track.x], find.said[track.y]} & {"x", "y"}
