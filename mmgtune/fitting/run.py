@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ from .identifiability import analyse
 from .journal import journalled
 from .least_squares import fit_offsets
 from .lost import hold_simulated
-from .optimum import Seeking
+from .optimum import Optimum, Seeking
 from .pooled import read_sisters, unheard
 from .problem import FitProblem
 from .result import Beside, FitResult
@@ -93,34 +93,70 @@ def _fit(
 ) -> FitResult:
     began = time.perf_counter()
     odd = oddities(trials.trials, profile.L_pp)
-    trials = in_pieces(trials, options)
+    posed = _posed(profile, in_pieces(trials, options), options, hooks)
+    recorded = checkpoint.load() if checkpoint and resume and checkpoint.path.is_file() else None
+    hold = partial(hold_simulated, profile, trials=_tuned_on(posed.setting.trials))
+    seeking = Seeking(posed.problem, posed.options, posed.before, posed.cost_before, hold, hooks, checkpoint, recorded)
+    best = seeking.optimum(more_starts)
+    hooks.on_phase("certificate and identifiability")
+    found = _looked_at(profile, posed, best, provenance)
+    return replace(
+        found,
+        wall_s=time.perf_counter() - began,
+        interrupted=hooks.stop(),
+        oddities=(*odd, *unheard(best.problem.box, posed.setting.sisters)),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Posed:
+    """A fit that is to be searched.
+
+    options  as they were given, with what no trial determines fixed where that was asked for
+    plain    the problem without the weight of its terms
+    weight   between J and the terms, None without terms
+    before   (n_targets,) pre-determined values in the unit cube, and what J and the objective are there
+    """
+
+    setting: Setting
+    options: FitOptions
+    plain: FitProblem
+    problem: FitProblem
+    weight: Weight | None
+    before: FloatArray
+    J_before: float
+    cost_before: float
+
+
+def _posed(profile: ShipProfile, trials: TrialSet, options: FitOptions, hooks: Hooks) -> _Posed:
+    """The problem of a fit, its terms weighed where it has some."""
     setting = make_setting(profile, trials, options)
-    problem = setting.problem()
+    plain = setting.problem()
     if options.identifiable:
-        held = traded(profile, trials, problem)
+        held = traded(profile, trials, plain)
         options = replace(options, fixed=(*options.fixed, *held), identifiable=False)
         setting = setting.holding(held)
-        problem = problem.with_targets(setting.model, setting.box)
-    plain = problem
-    recorded = checkpoint.load() if checkpoint and resume and checkpoint.path.is_file() else None
-    before = problem.box.to_unit(problem.box.pre)
-    if problem.terms:
+        plain = plain.with_targets(setting.model, setting.box)
+    before = plain.box.to_unit(plain.box.pre)
+    if plain.terms:
         hooks.on_phase("weighing what is known beforehand")
-    problem, weight = weigh(problem, np.clip(before, 0.0, 1.0), hooks.stop)
+    problem, weight = weigh(plain, np.clip(before, 0.0, 1.0), hooks.stop)
     J_before = float(problem.misfit(before[:, None])[0])
     cost_before = float(problem.costs(before[:, None])[0]) if problem.terms else J_before
-    hold = partial(hold_simulated, profile, trials=_tuned_on(trials))
-    best = Seeking(problem, options, before, cost_before, hold, hooks, checkpoint, recorded).optimum(more_starts)
-    problem, unit, found = best.problem, best.unit, best.cma_es
-    J = float(problem.misfit(unit[:, None])[0]) if problem.terms else best.cost
+    return _Posed(setting, options, plain, problem, weight, before, J_before, cost_before)
 
-    hooks.on_phase("certificate and identifiability")
+
+def _looked_at(profile: ShipProfile, posed: _Posed, best: Optimum, provenance: dict[str, Any]) -> FitResult:
+    """What there is to know of an optimum; not yet what the whole fit took, and whether it was stopped."""
+    setting, options, before = posed.setting, posed.options, posed.before
+    problem, unit, found, trials = best.problem, best.unit, best.cma_es, setting.trials
+    J = float(problem.misfit(unit[:, None])[0]) if problem.terms else best.cost
     restarts = found.restarts if found else []
     certificate = certify(
         problem,
         unit,
         best.cost,
-        cost_before,
+        posed.cost_before,
         best.ends,
         restarts,
         found.J if found else None,
@@ -129,20 +165,18 @@ def _fit(
     )
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in (*trials.trials, *trials.stated)}
-    everything = setting.problem(tuple(trials.trials)) if trials.trials else plain
+    everything = setting.problem(tuple(trials.trials)) if trials.trials else posed.plain
     compared = tuple(compare(everything, list(trials.trials.values()), setting.objective, roles, before, unit))
-    free_start = (
-        None if setting.estimated or not trials.tune else J_free_start(plain.estimated(setting.deviations()), unit)
-    )
+    from_noise = not setting.estimated and bool(trials.tune)
     return FitResult(
         profile=profile,
         options=options,
         box=problem.box,
         unit=unit,
         J=J if options.loss == "squares" else float(total(compared, "tune", "after") or J),
-        J_before=J_before,
-        J_free_start=free_start,
-        beside=beside(problem, before, unit, weight) if weight else None,
+        J_before=posed.J_before,
+        J_free_start=J_free_start(posed.plain.estimated(setting.deviations()), unit) if from_noise else None,
+        beside=beside(problem, before, unit, posed.weight) if posed.weight else None,
         compared=compared,
         stated=compared_stated(setting, roles, before, unit),
         restarts=tuple(restarts),
@@ -152,14 +186,12 @@ def _fit(
         identifiability=analyse(problem, unit, held_by_bound),
         evaluations=problem.evaluations,
         diverged=found.diverged if found else 0,
-        wall_s=time.perf_counter() - began,
+        wall_s=0.0,
         held=tuple(options.fixed),
         ties=setting.model.ties,
         scales=setting.objective.scales,
         channels=setting.objective.channels,
         provenance=provenance,
-        interrupted=hooks.stop(),
-        oddities=(*odd, *unheard(problem.box, setting.sisters)),
     )
 
 
