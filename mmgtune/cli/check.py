@@ -114,11 +114,11 @@ def command(
     given = Given(chosen, everything, junit, summary, out)
     names = (profile, trials, baseline)
     if sensitivity is not None:
-        given.refuse_beside("sensitivity", baseline)
-        _sensitivity(names, options, sensitivity, chosen == "json")
+        path = given.baseline_alone("sensitivity", baseline)
+        _sensitivity(profile, trials, path, options, sensitivity, chosen == "json")
     elif update_baseline:
-        given.refuse_beside("update_baseline", baseline)
-        _update(names, options, given)
+        path = given.baseline_alone("update_baseline", baseline)
+        _update(names, path, options, given)
     else:
         given.hold()
         with c.placed(out, force=force):
@@ -146,14 +146,12 @@ def _checked(names: Names, options: CheckOptions, given: Given) -> CheckReport:
     return report
 
 
-def _update(names: Names, options: CheckOptions, given: Given) -> None:
+def _update(names: Names, baseline: Path, options: CheckOptions, given: Given) -> None:
     from .. import checking
 
-    profile, _, baseline = names
-    assert baseline is not None  # else it was refused
     recorded = checking.read_baseline(baseline) if baseline.exists() else None
     how = _how(names, options, recorded)
-    given.update(checking.update_baseline(profile, _data(names), str(baseline), **how), str(baseline))
+    given.update(checking.update_baseline(names[0], _data(names), str(baseline), **how), str(baseline))
 
 
 def _data(names: Names) -> TrialSet:
@@ -182,12 +180,10 @@ def _words(names: Names) -> tuple[str, str, str | None]:
     return profile, trials, None if baseline is None else str(baseline)
 
 
-def _sensitivity(names: Names, options: CheckOptions, share: float, json: bool) -> None:
+def _sensitivity(profile: str, trials: str, baseline: Path, options: CheckOptions, share: float, json: bool) -> None:
     from ..checking import read_baseline
     from ..checking.sensitivity import sensitivity, table
 
-    profile, trials, baseline = names
-    assert baseline is not None  # else it was refused
     recorded = read_baseline(baseline)
     ship, data = c.load(profile, trials)
     rows = sensitivity(ship, data, recorded, share, backend=options.backend)
@@ -207,8 +203,11 @@ class Given:
     summary: Path | None
     out: Path | None = None
 
-    def refuse_beside(self, name: str, baseline: Path | None) -> None:
-        """Raises OptionError where that has no baseline, or was asked for with what only a check has."""
+    def baseline_alone(self, name: str, baseline: Path | None) -> Path:
+        """The baseline that ``name`` needs.
+
+        Raises OptionError where there is none, or something was asked for that only a check has.
+        """
         if baseline is None:
             why = "the file of what is good was not named"
             raise OptionError(Problem(f"{name}=True needs a baseline", name, why, "add baseline=FILE"))
@@ -217,6 +216,7 @@ class Given:
         why = "beside it no check is made, and nothing is written of one"
         if asked := [option for option, value in of_a_check.items() if value]:
             raise OptionError(*(Problem(f"it does not go with {name}=True", one, why, "leave it out") for one in asked))
+        return baseline
 
     def hold(self) -> None:
         """Raises OutputError where a file that is asked for cannot be written, before any work."""
