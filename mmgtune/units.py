@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 
 from .errors import OptionError, Problem, reason
 
@@ -182,6 +183,20 @@ def canonical(unit: str) -> str:
     """A unit by the name the program knows it by; unknown ones as they are."""
     unit = unit.strip()
     return _SYNONYMS.get(unit.lower(), unit)
+
+
+def name_and_unit(header: str, brackets: Sequence[str] = ("[]",)) -> tuple[str, str]:
+    """Name and unit of a column headed "u [m/s]", as it is written; the header as it is, and "", where it has none.
+
+    brackets  pairs of marks that a unit may stand in, at the end
+    """
+    text = header.rstrip()
+    for opening, closing in brackets:
+        if text.endswith(closing):
+            name, mark, unit = text[:-1].rpartition(opening)
+            if mark and unit and closing not in unit:
+                return name.rstrip(), unit
+    return header, ""
 
 
 def is_unit(text: str) -> bool:

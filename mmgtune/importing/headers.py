@@ -4,29 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..units import canonical
+from ..units import canonical, name_and_unit
+
+BRACKETS = ("[]", "()")
+"""What logs write units in."""
 
 
 def unit_in(header: str) -> str | None:
     """The unit in a header such as "u_velo [m/s]" or "speed (kn)"; None where it has none."""
-    unit = _divided(header)[1]
+    unit = name_and_unit(header, BRACKETS)[1]
     return canonical(unit) if unit else None
 
 
 def bare(header: str) -> str:
     """A header without its unit."""
-    return _divided(header)[0].strip()
-
-
-def _divided(header: str) -> tuple[str, str]:
-    """Name and unit, "" where it has none."""
-    text = header.rstrip()
-    for opening, closing in ("[]", "()"):
-        if text.endswith(closing):
-            name, mark, unit = text[:-1].rpartition(opening)
-            if mark and unit and closing not in unit:
-                return name, unit
-    return header, ""
+    return name_and_unit(header, BRACKETS)[0].strip()
 
 
 def find_column(wanted: str | int, names: Sequence[str]) -> int | None:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, brief, kind_of
-from ..units import canonical
+from ..units import canonical, name_and_unit
 from .metadata import as_json, problems_in
 from .model import Trial, fields_of
 from .schema import REQUIRED, known_column
@@ -38,7 +37,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     where = id if isinstance(id, str) else brief(id)
     index = getattr(table, "index", None)
     time = str(getattr(index, "name", None))
-    if _divided(time)[0] == "t" and time not in table and "t" not in table:
+    if name_and_unit(time)[0] == "t" and time not in table and "t" not in table:
         table = {time: index, **{name: table[name] for name in table}}
     if not hasattr(table, "keys"):
         fix = "give a DataFrame, or a dict of arrays"
@@ -69,15 +68,9 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     return Trial(id=id, **named, **fields_of(columns), ignored=tuple(ignored))
 
 
-def _divided(header: str) -> tuple[str, str]:
-    """Name and unit of "u [m/s]", "" for a unit where there is none."""
-    found = re.fullmatch(r"(.*\S)\s*\[([^\[\]]*)\]", header)
-    return (found[1], found[2]) if found else (header, "")
-
-
 def _named(header: str) -> str:
     """A column by its name alone, where the program knows it.  Raises TrialError for one in another unit."""
-    name, unit = _divided(header)
+    name, unit = name_and_unit(header)
     known = known_column(name)
     if known is None or not unit:
         return header
