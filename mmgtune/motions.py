@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -248,12 +248,21 @@ def as_trial(ship: ShipProfile | Predictor, motion: Motion, *, with_forces: bool
         if of is None:
             raise OptionError(Problem(f"'{id}' has no forces", "with_forces", "only a ship profile has them"))
         extra = _columns(breakdown(of, motion.states, motion.controls, motion.around, theta))
+    note = f"Simulated by mmgtune with {by}."
+    return generated_trial(motion, ship=id, manoeuvre=manoeuvre_kind(motion.track()), note=note, beside=extra)
+
+
+def generated_trial(motion: Motion, *, ship: str, manoeuvre: str, note: str, beside: Mapping[str, FloatArray]) -> Trial:
+    """A run that was made, not measured, as a trial.
+
+    beside  further columns (n_samples,) by name, behind the inputs that have no field of their own
+    """
     own = {name: motion.controls[:, k] for k, name in enumerate(motion.inputs) if name not in MAIN_INPUTS}
     x, y, psi, u, v_m, r = motion.states.T
     return Trial(
         id=motion.id,
-        ship=id,
-        manoeuvre=manoeuvre_kind(motion.track()),
+        ship=ship,
+        manoeuvre=manoeuvre,
         source="generated",
         t=motion.t,
         x=x,
@@ -264,11 +273,8 @@ def as_trial(ship: ShipProfile | Predictor, motion: Motion, *, with_forces: bool
         r=r,
         n=motion.mean_of("propeller"),
         delta=motion.mean_of("rudder"),
-        extra={**own, **extra},
-        noise={},
-        note=f"Simulated by mmgtune with {by}.",
-        path=None,
-        sha256="",
+        extra={**own, **beside},
+        note=note,
     )
 
 

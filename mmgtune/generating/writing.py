@@ -11,14 +11,13 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, among, must_be_a
 from ..files import all_or_none, path_of, refuse_existing, write_text
-from ..inputs import INPUTS
 from ..model import Model
+from ..motions import Motion, generated_trial
 from ..options import MakeOptions
 from ..options.choice import must_be
 from ..phrases import capital
 from ..profile import ShipProfile, froude_scaled, load_profile
 from ..trial import Trial, write_trial
-from ..trial.schema import MAIN_INPUTS
 from ..units import DEG
 from .sailing import Sailed
 from .sets import PLANS, Plan, sailed
@@ -121,37 +120,26 @@ def _truth(
 ) -> Trial:
     """One ship of a set as a trial, at its scale."""
     root = float(np.sqrt(scale))
-    x, y, psi, u, v_m, r = found.states[:n_samples, :, k].T * _column([scale, scale, 1.0, root, root, 1.0 / root])
     inputs = profile.arrangement.inputs
-    units = [1.0 if one.unit == "rad" else 1.0 / root for one in inputs]
-    driven = dict(zip((one.name for one in inputs), found.controls[:n_samples, :, k].T * _column(units), strict=True))
-    rudders = [driven[one.name] for one in inputs if INPUTS[one.name].role == "rudder"]
     speed, direction = found.wind[:n_samples, :, k].T
-    extra = {name: values for name, values in driven.items() if name not in MAIN_INPUTS}
-    return Trial(
+    motion = Motion(
         id=plan.ids[k],
-        ship=profile.id,
-        manoeuvre=plan.manoeuvres[k],
-        source="generated",
         t=options.sample * np.arange(float(n_samples)),
-        x=x,
-        y=y,
-        psi=psi,
-        u=u,
-        v_m=v_m,
-        r=r,
-        n=driven["n"],
-        delta=np.mean(rudders, axis=0),
-        extra={**extra, "wind_speed": root * speed, "wind_dir": direction},
-        note=NOTE.format(
-            profile=SHIPS["vectwin"],
-            larger=f", {scale:g} times as long by Froude's law" if scale != 1.0 else "",
-            manoeuvre=plan.manoeuvres[k],
-            set=plan.name,
-            seed=options.seed,
-            shown=SHOWN[False],
-        ),
+        states=found.states[:n_samples, :, k] * [scale, scale, 1.0, root, root, 1.0 / root],
+        controls=found.controls[:n_samples, :, k] * [1.0 if one.unit == "rad" else 1.0 / root for one in inputs],
+        diverged=False,
+        inputs=tuple(one.name for one in inputs),
     )
+    note = NOTE.format(
+        profile=SHIPS["vectwin"],
+        larger=f", {scale:g} times as long by Froude's law" if scale != 1.0 else "",
+        manoeuvre=plan.manoeuvres[k],
+        set=plan.name,
+        seed=options.seed,
+        shown=SHOWN[False],
+    )
+    wind = {"wind_speed": root * speed, "wind_dir": direction}
+    return generated_trial(motion, ship=profile.id, manoeuvre=plan.manoeuvres[k], note=note, beside=wind)
 
 
 def _shown(truth: Trial, noise: dict[str, float], rng: np.random.Generator) -> Trial:
