@@ -185,7 +185,7 @@ def canonical(unit: str) -> str:
     return _SYNONYMS.get(unit.lower(), unit)
 
 
-def name_and_unit(header: str, brackets: Sequence[str] = ("[]",)) -> tuple[str, str]:
+def name_and_unit(header: str, brackets: Sequence[tuple[str, str]] = (("[", "]"),)) -> tuple[str, str]:
     """Name and unit of a column headed "u [m/s]", as it is written; the header as it is, and "", where it has none.
 
     brackets  pairs of marks that a unit may stand in, at the end

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ..units import canonical, name_and_unit
 
-BRACKETS = ("[]", "()")
+BRACKETS = (("[", "]"), ("(", ")"))
 """What logs write units in."""
 
 
