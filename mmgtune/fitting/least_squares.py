@@ -21,6 +21,9 @@ from .journal import remembered
 from .problem import FitProblem
 from .quadratic import Quadratic, flat_where_lost
 
+MOST_ITERATIONS = 80
+"""Iterations of a solve at most."""
+
 QUIET = 1e-9
 """Relative fall of the objective that counts as none; two such iterations in a row end a start."""
 
@@ -70,13 +73,25 @@ class LeastSquaresResult(Brief):
     promised: float = 0.0
 
 
-def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -> list[Any]:
-    """Numbers and texts that identify a solve in a journal."""
-    named = {name: "a function" if callable(value) else value for name, value in named.items()}
-    anchor = named.pop("anchor", None)
-    beliefs = named.pop("beliefs", None)
-    plain = [value for value in given if not callable(value)]
-    return ["solve", *problem.asked(), starts, anchor, repr(plain), repr(sorted(named.items())), *(beliefs or ())]
+def _asked(
+    problem: FitProblem,
+    starts: FloatArray,
+    max_iterations: int = MOST_ITERATIONS,
+    ridge: float = 0.0,
+    anchor: FloatArray | None = None,
+    stop: Callable[[], bool] | None = None,
+    whiten: Callable[[FloatArray], FloatArray] | None = None,
+    tolerance: float = 0.0,
+    beliefs: tuple[FloatArray, FloatArray] | None = None,
+    trusting: bool = False,
+    hopeless: float = math.inf,
+) -> list[Any]:
+    """Numbers and texts that identify a solve in a journal: its arguments, but for what stops it.
+
+    Of a whitening it is said that there is one: which follows from what the run has done before.
+    """
+    numbers = [max_iterations, ridge, tolerance, trusting, hopeless, "whitened" if whiten else ""]
+    return ["solve", *problem.asked(), starts, anchor, *numbers, *(beliefs or ())]
 
 
 def _noted(ends: list[LeastSquaresResult]) -> list[Any]:
@@ -97,7 +112,7 @@ def _recalled(noted: list[Any]) -> list[LeastSquaresResult]:
 def solve(
     problem: FitProblem,
     starts: FloatArray,
-    max_iterations: int = 80,
+    max_iterations: int = MOST_ITERATIONS,
     ridge: float = 0.0,
     anchor: FloatArray | None = None,
     stop: Callable[[], bool] = lambda: False,
