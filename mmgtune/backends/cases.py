@@ -189,8 +189,8 @@ def finish(
     cost: FloatArray,
     fastest2: FloatArray,
     last: FloatArray,
-    states: FloatArray | None = None,
-    residuals: FloatArray | None = None,
+    states: FloatArray | None,
+    residuals: FloatArray | None,
 ) -> LaneResult:
     """The result, with diverged lanes marked; last (n_cases, n_candidates, 6), fastest2 squared speed [m^2/s^2].
 

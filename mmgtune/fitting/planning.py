@@ -32,6 +32,9 @@ FIT_FILES = ("fit.json", "profile.toml", "history.parquet", "motions.parquet", "
 LEFT_OUT_FILES = ("leave_out.json", "motions.parquet", *FIT_FILES[4:])
 
 
+TRIED = 8 * WIDTH
+"""Candidates that are run to see how long one takes."""
+
 ROUGHLY = 2e-8
 """Time [s] a stage of a lane-step takes on a core, where it cannot be tried yet."""
 
@@ -158,13 +161,13 @@ def can_be_tried(problem: FitProblem) -> bool:
     return problem.backend.name != "compiled" or get_ready_backend(problem.model) is not None
 
 
-def evaluation_seconds(problem: FitProblem, candidates: int = 8 * WIDTH) -> float:
+def evaluation_seconds(problem: FitProblem) -> float:
     """How long one evaluation of all trials takes [s], among many at once; roughly where it cannot be tried."""
     if not can_be_tried(problem):
         stages = problem.cases.steps * len(problem.integrator.tableau[0]) * problem.integrator.substeps
         return ROUGHLY * stages / cores()
-    middle = np.repeat(problem.box.to_unit(problem.box.pre)[:, None], candidates, axis=1)
+    middle = np.repeat(problem.box.to_unit(problem.box.pre)[:, None], TRIED, axis=1)
     problem.costs(middle[:, :1])  # read before it is timed
     began = time.perf_counter()
     problem.costs(middle)
-    return (time.perf_counter() - began) / candidates
+    return (time.perf_counter() - began) / TRIED

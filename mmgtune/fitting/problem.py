@@ -22,6 +22,12 @@ PerCase = TypeVar("PerCase", FloatArray, IntArray)
 LANES_AT_ONCE = 512
 """Largest number of runs kept with their residuals at one time, but for the lanes of one block; bounds the memory."""
 
+FORWARD = 1e-6
+"""Step of forward differences, of a target in the unit cube; a thousand times as much of the deviation of an offset."""
+
+CENTRAL, CENTRAL_OFFSET = 1e-5, 1e-2
+"""Steps of central differences: of a target in the unit cube, and of an offset in deviations of the initial states."""
+
 
 @dataclass
 class Counter:
@@ -264,7 +270,7 @@ class FitProblem:
         return np.asarray(np.sqrt(self.weight) * rows[:, of.reshape(-1)])
 
     def jacobians(
-        self, unit: FloatArray, offsets: FloatArray | None = None, step: float = 1e-6
+        self, unit: FloatArray, offsets: FloatArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residuals and their derivatives at points (n_targets, n_points) of the unit cube, by forward differences.
 
@@ -278,14 +284,14 @@ class FitProblem:
         n_moved = len(together)
         extra = 0 if self.sigma is None else 6
         n_columns = 1 + n_moved + extra
-        steps = np.where(unit + step > 1.0, -step, step)
+        steps = np.where(unit + FORWARD > 1.0, -FORWARD, FORWARD)
         columns = np.repeat(unit[:, :, None], n_columns, axis=2)
         for i, moved_here in enumerate(together):
             columns[moved_here, :, 1 + i] += steps[moved_here]
         base_offsets = np.repeat(self.offsets[:, None], n_points, axis=1) if offsets is None else offsets
         moved = np.repeat(base_offsets[:, :, None], n_columns, axis=2)
         if self.sigma is not None:
-            self._move_offsets(moved[:, :, 1 + n_moved :], step)
+            self._move_offsets(moved[:, :, 1 + n_moved :])
         n_lanes = n_points * n_columns
         values = self.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
         values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
@@ -297,25 +303,25 @@ class FitProblem:
             slopes /= steps.T[:, None, :]
             by_offset = values[:, :, 1 + n_moved :] - base
             if self.sigma is not None:
-                by_offset[:, : self.n_residuals] /= self.by_row(step * self.sigma * 1e3)
+                by_offset[:, : self.n_residuals] /= self.by_row(FORWARD * self.sigma * 1e3)
         return base[:, :, 0], slopes, by_offset
 
-    def offset_slopes(self, unit: FloatArray, offsets: FloatArray, step: float = 1e-6) -> tuple[FloatArray, FloatArray]:
+    def offset_slopes(self, unit: FloatArray, offsets: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Residuals (n_rows,) and derivatives (n_rows, 6) by the offsets alone, as of ``jacobians``, at one point."""
         assert self.sigma is not None  # asked where initial states are estimated
         moved = np.repeat(offsets[:, None], 7, axis=1)
-        self._move_offsets(moved[:, None, 1:], step)
+        self._move_offsets(moved[:, None, 1:])
         values = self.residuals(np.repeat(unit[:, None], 7, axis=1), moved).T
         with np.errstate(invalid="ignore"):
             slopes = values[:, 1:] - values[:, :1]
-            slopes[: self.n_residuals] /= self.by_row(step * self.sigma * 1e3)
+            slopes[: self.n_residuals] /= self.by_row(FORWARD * self.sigma * 1e3)
         return values[:, 0], slopes
 
-    def _move_offsets(self, moved: FloatArray, step: float) -> None:
+    def _move_offsets(self, moved: FloatArray) -> None:
         """Move offset k in column k of (n_cases, n_points, 6, 6)."""
         assert self.sigma is not None  # asked where initial states are estimated
         for k in range(6):
-            moved[:, :, k, k] += step * self.sigma[:, None, k] * 1e3
+            moved[:, :, k, k] += FORWARD * self.sigma[:, None, k] * 1e3
 
     def by_row(self, of_cases: PerCase) -> PerCase:
         """Values by case (n_cases, ...) repeated for each residual of the case (n_residuals, ...)."""
@@ -343,31 +349,31 @@ class FitProblem:
                 apart[:, self.n_residuals :, k] = moved[:, self.n_residuals :, i]
         return apart
 
-    def central_jacobian(self, unit: FloatArray, step: float = 1e-5) -> tuple[FloatArray, FloatArray]:
+    def central_jacobian(self, unit: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Residuals (n_rows,) and derivatives (n_rows, n_targets) at one point, by central differences.
 
         Looks a step beyond the bounds where the point is on one.
         """
         n = len(unit)
         columns = np.repeat(unit[:, None], 2 * n + 1, axis=1)
-        columns[np.arange(n), 1 + np.arange(n)] += step
-        columns[np.arange(n), 1 + n + np.arange(n)] -= step
+        columns[np.arange(n), 1 + np.arange(n)] += CENTRAL
+        columns[np.arange(n), 1 + n + np.arange(n)] -= CENTRAL
         values = self.residuals(columns)
-        return values[0], (values[1 : n + 1] - values[n + 1 :]).T / (2.0 * step)
+        return values[0], (values[1 : n + 1] - values[n + 1 :]).T / (2.0 * CENTRAL)
 
-    def central_offsets(self, unit: FloatArray, step: float = 1e-2) -> FloatArray:
+    def central_offsets(self, unit: FloatArray) -> FloatArray:
         """Derivatives (n_rows, 6) of residuals by the initial offsets of their case, by central differences.
 
-        step  in deviations of the initial states, which must be estimated
+        Initial states must be estimated.
         """
         assert self.sigma is not None  # asked of such problems only
         moved = np.repeat(self.offsets[:, None], 12, axis=1)
         for k in range(6):
-            moved[:, k, k] += step * self.sigma[:, k]
-            moved[:, 6 + k, k] -= step * self.sigma[:, k]
+            moved[:, k, k] += CENTRAL_OFFSET * self.sigma[:, k]
+            moved[:, 6 + k, k] -= CENTRAL_OFFSET * self.sigma[:, k]
         values = self.residuals(np.repeat(unit[:, None], 12, axis=1), moved)
         slopes = (values[:6] - values[6:]).T
-        slopes[: self.n_residuals] /= self.by_row(2.0 * step * self.sigma)
+        slopes[: self.n_residuals] /= self.by_row(2.0 * CENTRAL_OFFSET * self.sigma)
         return slopes
 
     def without_offsets(

@@ -203,6 +203,10 @@ def _runs(results: Sequence[Mapping[str, Any]]) -> Picture | None:
     return picture(figure, "Runs left out", caption, data)
 
 
+def _before_and_after(row: Mapping[str, Any], key: str, digits: int) -> str:
+    return f"{shown(row.get(f'{key}_before'), digits)} → {shown(row.get(f'{key}_after'), digits)}"
+
+
 def _scores(record: LeaveOutRecord) -> Section:
     rows = _kinds(record.data["scores"])
     if not rows:
@@ -210,20 +214,16 @@ def _scores(record: LeaveOutRecord) -> Section:
     lines = []
     for row in rows:
         interval = row["share_removed_ci95"]
-
-        def both(key: str, digits: int, row: Mapping[str, Any] = row) -> str:
-            return f"{shown(row.get(f'{key}_before'), digits)} → {shown(row.get(f'{key}_after'), digits)}"
-
         lines.append(
             cells(
                 clean(row["manoeuvre"]),
                 str(row["runs"]),
-                both("position_rms_m", 3),
-                both("heading_rms_deg", 2),
-                both("L_MSE", 3),
+                _before_and_after(row, "position_rms_m", 3),
+                _before_and_after(row, "heading_rms_deg", 2),
+                _before_and_after(row, "L_MSE", 3),
                 share(row["share_removed"]),
                 span(*interval) if interval else NONE,
-                both("J", 4),
+                _before_and_after(row, "J", 4),
             )
         )
     table = Table(

@@ -7,6 +7,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 
 DRAWS = 1000
+SEED = 1
+"""The same windows have the same intervals."""
 LEAST_GROUPS = 3
 """Groups below which there is no interval."""
 
@@ -17,10 +19,10 @@ class Draws:
     group  (n_windows,) which group each window is of, from 0
     """
 
-    def __init__(self, group: IntArray, seed: int = 1):
+    def __init__(self, group: IntArray):
         self.group = group
         self.n_groups = int(group.max()) + 1 if len(group) else 0
-        rng = np.random.default_rng(seed)
+        rng = np.random.default_rng(SEED)
         if self.n_groups:
             self._times = rng.multinomial(self.n_groups, np.full(self.n_groups, 1.0 / self.n_groups), size=DRAWS)
         else:

@@ -82,14 +82,13 @@ class WindowTable:
         _, found = np.unique(keys, axis=0, return_inverse=True)
         return np.asarray(found, dtype=np.int64).reshape(-1), "hours" if hours == 1.0 else f"stretches of {hours:g} h"
 
-    def L_MSE(self, model: str, sigma: Mapping[str, float], some: BoolArray | None = None) -> float:
-        """The standardised error over windows, all where None; NaN where a state has no spread."""
-        return sum(self.L_MSE_by_state(model, sigma, some).values())
+    def L_MSE(self, model: str, sigma: Mapping[str, float]) -> float:
+        """The standardised error over all windows; NaN where a state has no spread."""
+        return sum(self.L_MSE_by_state(model, sigma).values())
 
-    def L_MSE_by_state(self, model: str, sigma: Mapping[str, float], some: BoolArray | None = None) -> dict[str, float]:
+    def L_MSE_by_state(self, model: str, sigma: Mapping[str, float]) -> dict[str, float]:
         """Its parts: the mean over all samples of each state that was measured."""
-        rows = slice(None) if some is None else some
-        squares, counts = self.models[model].squares[rows].sum(axis=0), self.counts[rows].sum(axis=0)
+        squares, counts = self.models[model].squares.sum(axis=0), self.counts.sum(axis=0)
         return {
             name: float(squares[k] / counts[k] / value**2) if value > 0.0 else np.nan
             for k, (name, value) in enumerate(sigma.items())
