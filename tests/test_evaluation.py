@@ -217,7 +217,7 @@ def test_a_problem_does_not_change(suzaku):
             setattr(problem, field.name, None)
     unit = problem.box.to_unit(problem.box.pre)[:, None]
     moved = problem.with_offsets(problem.sigma)
-    held = moved.held()
+    held = moved.from_measured()
     assert held.costs(unit) == problem.costs(unit)
     assert moved.costs(unit) != problem.costs(unit)
     assert held.evaluations == moved.evaluations == problem.evaluations == 4

@@ -30,7 +30,7 @@ from ..profile.reading import with_wind_coefficients
 from .defaults import Complete
 from .particulars import Particulars, read_particulars
 from .propulsion import Propulsion, propulsion
-from .scatter import HELD, SCATTER, scatter_of
+from .scatter import LEFT_ALONE, SCATTER, scatter_of
 
 FADING = -4.0
 """C_w of the wake in a turn [1/rad^2]: Kijima et al. 1990."""
@@ -155,7 +155,7 @@ class _Estimate:
             sections=sections,
             steering_gear=SteeringGear(*(self.of("steering_gear", name) for name in ("max_angle", "rate"))),
             approach=Approach(self.U, self.ship.get("approach", "n") or rounded(self.propulsion.n)),
-            targets=tuple(name for name in SCATTER if name in scattered and name not in HELD),
+            targets=tuple(name for name in SCATTER if name in scattered and name not in LEFT_ALONE),
             provenance={
                 "made_by": "mmgtune profile new",
                 "particulars": {"sha256": self.ship.sha256, **self.ship.values},

@@ -49,7 +49,7 @@ SCATTER: dict[str, tuple[float, float]] = {
 }
 """One standard deviation by coefficient: a share of its value and a size in its unit, of which the larger counts."""
 
-HELD = ("particulars.m_x_", "particulars.m_y_", "particulars.J_zz_")
+LEFT_ALONE = ("particulars.m_x_", "particulars.m_y_", "particulars.J_zz_")
 """Coefficients with a scatter that a fit leaves alone unless it is told: trials hardly tell them from others."""
 
 

@@ -46,7 +46,7 @@ from .one_sided import coverage_notes
 from .optimum import edge_ridge, random_starts
 from .problem import FitProblem
 from .robust import weigh_down
-from .run import hold_directions
+from .run import fixed_where_undetermined
 from .setting import in_pieces, make_problem
 from .weighing import Weight, weigh
 
@@ -369,7 +369,7 @@ class _ToAllRuns:
         options = asked.fit_options()
         trials = in_pieces(whole, options)
         if options.identifiable:
-            options = hold_directions(profile, trials, options)
+            options = fixed_where_undetermined(profile, trials, options)
         problem = make_problem(profile, trials, options)
         before = np.clip(problem.box.to_unit(problem.box.pre), 0.0, 1.0)
         problem, weight = weigh(problem, before, hooks.stop)

@@ -99,7 +99,7 @@ class Seeking:
         problem, stop = self.problem, self.hooks.stop
         starts = random_starts(problem, self.options, self.before, more)
         if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
-            starts = np.column_stack([end.unit for end in solve(problem.held(), starts, stop=stop)])
+            starts = np.column_stack([end.unit for end in solve(problem.from_measured(), starts, stop=stop)])
         exact = 0.0 if all(term.known_before for term in problem.terms) else EXACT * problem.weight
         return solve(problem, starts, ridge=ridge, anchor=self.before, stop=stop, tolerance=exact)
 

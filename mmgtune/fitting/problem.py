@@ -38,7 +38,9 @@ class Counter:
 
 @dataclass(frozen=True, eq=False)
 class FitProblem:
-    """Model, cases, targets, box and terms.  ``with_...`` and ``held`` give another problem; only ``counter`` changes.
+    """Model, cases, targets, box and terms.
+
+    ``with_...``, ``estimated`` and ``from_measured`` give another problem; only ``counter`` changes.
 
     sigma    (n_cases, 6) deviations of the measured initial states where these are estimated, None where they are held
     offsets  (n_cases, 6) offsets of the initial states in use where a call gives none
@@ -110,8 +112,8 @@ class FitProblem:
         none = np.zeros_like(self.offsets)
         return replace(self, sigma=sigma, offsets=none, prior=prior_weight(sigma, self.cases.weight))
 
-    def held(self) -> Self:
-        """Initial states held at the measured ones."""
+    def from_measured(self) -> Self:
+        """Runs begin at the measured initial states; the opposite of ``estimated``."""
         none = np.zeros_like(self.offsets)
         return replace(self, sigma=None, offsets=none, prior=none)
 

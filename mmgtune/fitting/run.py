@@ -232,7 +232,7 @@ def traded(profile: ShipProfile, trials: TrialSet, problem: FitProblem) -> tuple
     return tuple(next(iter(direction.weights)) for direction in directions)
 
 
-def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> FitOptions:
+def fixed_where_undetermined(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> FitOptions:
     """The options with one coefficient fixed for every direction that no trial determines, found before searching."""
     held = traded(profile, trials, make_problem(profile, trials, options))
     return replace(options, fixed=(*options.fixed, *held), identifiable=False)

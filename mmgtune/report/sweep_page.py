@@ -116,9 +116,9 @@ def _off(record: SweepRecord, run: Mapping[str, Any]) -> tuple[Card, ...]:
     """How far off the fit of a range is, in metres and degrees, on trials held out where there are any; of records
     without that from the range's own folder, nothing where that is not there.
     """
-    role = next((one for one in misfit.HELD if one in (run.get("off") or {})), None)
+    role = next((one for one in misfit.ROLES if one in (run.get("off") or {})), None)
     if role is not None:
-        return off_cards(run["off"][role], misfit.HELD[role])
+        return off_cards(run["off"][role], misfit.ROLES[role])
     folder = misfit.run_folder(run)
     path = record.folder / (folder or "") / "fit.json"
     if folder is None or not path.is_file():

@@ -31,7 +31,7 @@ those of shafts and gears alike, so that a faster shaft tells a model and how mu
 FASTEST_SHAFT = 5.0
 """Revolutions [1/s] that only models' shafts exceed."""
 
-HELD, HELD_SECONDS = 4, 6.0
+STANDS, STANDS_SECONDS = 4, 6.0
 """Samples that orders stand still for before they change and after, and the longest time [s] between two: an engine
 takes longer."""
 
@@ -195,9 +195,9 @@ def jump_between_holds(t: FloatArray, values: FloatArray) -> float:
     steps = np.abs(np.diff(values))
     still = steps <= 1e-6 * float(np.max(np.abs(values), initial=0.0))
     held = np.concatenate([[0], np.cumsum(still)])
-    n = HELD - 1
+    n = STANDS - 1
     k = np.arange(n, len(steps) - n)
-    jumps = (held[k] - held[k - n] == n) & (held[k + n + 1] - held[k + 1] == n) & (np.diff(t)[k] < HELD_SECONDS)
+    jumps = (held[k] - held[k - n] == n) & (held[k + n + 1] - held[k + 1] == n) & (np.diff(t)[k] < STANDS_SECONDS)
     return float(np.max(steps[k][jumps], initial=0.0))
 
 

@@ -148,5 +148,5 @@ def test_estimated_initial_states_count(suzaku, noisy):
     assert found.correlation == pytest.approx(correlation, abs=1e-4)
 
     # They matter: states known exactly would make the coefficients look better known than they are.
-    held = analyse(problem.held(), unit, np.zeros(len(names), dtype=bool))
+    held = analyse(problem.from_measured(), unit, np.zeros(len(names), dtype=bool))
     assert max(found.stderr[name] / held.stderr[name] for name in found.names) > 1.05

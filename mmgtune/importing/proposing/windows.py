@@ -19,7 +19,7 @@ MOST = 120
 """Windows of a log."""
 ROWS = 12_000
 """Rows that are looked at, spread over the log."""
-HELD = 3.0
+SELDOM = 3.0
 """For so many of its usual steps a value of a column logged seldom stands."""
 PAUSE = 10.0
 """Usual steps from row to row; over a longer one a log paused, and what a ship did meanwhile is not in it."""
@@ -40,7 +40,7 @@ class Windows:
         known = np.isfinite(t)
         best = np.maximum.accumulate(np.where(known, t, -np.inf))
         kept = np.flatnonzero(known & (np.concatenate([[True], t[1:] > best[:-1]])))
-        columns = [held(one[kept], HELD) for one in columns]
+        columns = [held(one[kept], SELDOM) for one in columns]
         every = max(1, len(kept) // ROWS)
         kept, columns = kept[::every], [one[::every] for one in columns]
         self.t = t[kept]
