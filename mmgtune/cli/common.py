@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from datetime import datetime
 from itertools import count
 from pathlib import Path
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from ..profile import ShipProfile
     from ..profile.doubts import Doubt
     from ..trial import TrialSet, VoyageSet
+    from .options import RunOptions
 
 
 _MADE: list[Path] = []
@@ -132,6 +133,24 @@ def print_plan(plan: Plan, folder: Path, json: bool) -> None:
         print_json({**plan.to_dict(), "out": str(folder)})
         return
     show(f"{plan}\nwrites    {folder}: {', '.join(plan.writes)}")
+
+
+def planned(run: RunOptions, ship: HasId, plan: Callable[[], Plan]) -> tuple[Path, Plan] | None:
+    """Where a long run writes, and its plan; None where only that was asked for, which is then said.
+
+    plan  makes it, and finds what is wrong before a folder is made
+    Raises OutputError for a folder that results cannot go to.
+    """
+    from ..run_folders import refuse_taken
+
+    folder = run.out or default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
+    made = plan()
+    if run.dry_run:
+        print_plan(made, folder, run.json)
+        return None
+    return folder, made
 
 
 def needs_folder(**asked: bool) -> None:

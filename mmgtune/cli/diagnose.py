@@ -87,7 +87,7 @@ def command(
     """
     from ..diagnose import diagnose, plan_diagnosis, write_diagnosis
     from ..report import render
-    from ..run_folders import claimed, refuse_taken
+    from ..run_folders import claimed
 
     failing = split(fail_on, "fail_on")
     unknown = [word for word in failing if word not in FAILING]
@@ -96,13 +96,9 @@ def command(
             *(Problem(f"unknown verdict '{word}'", "fail_on", **among(word, FAILING)) for word in unknown)
         )
     ship, data = c.load_with_voyages(profile, trials)
-    folder = run.out or c.default_out(ship)
-    if not run.dry_run:
-        refuse_taken(folder, force=run.force, resume=run.resume)
-    plan = plan_diagnosis(ship, data, options)
-    if run.dry_run:
-        c.print_plan(plan, folder, run.json)
+    if (asked := c.planned(run, ship, lambda: plan_diagnosis(ship, data, options))) is None:
         return
+    folder, plan = asked
     if not run.quiet:
         c.say_odd(data, ship.L_pp)
     left = Left(plan.seconds, options.most).words

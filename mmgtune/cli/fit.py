@@ -60,16 +60,12 @@ def command(
     from ..options import PredictOptions
     from ..posterior import posterior, write_posterior
     from ..report import render
-    from ..run_folders import claimed, refuse_taken
+    from ..run_folders import claimed
 
     ship, data = c.load(profile, trials)
-    folder = run.out or c.default_out(ship)
-    if not run.dry_run:
-        refuse_taken(folder, force=run.force, resume=run.resume)
-    plan = plan_fit(ship, data, options)  # also finds what is wrong before a folder is made
-    if run.dry_run:
-        c.print_plan(plan, folder, run.json)
+    if (asked := c.planned(run, ship, lambda: plan_fit(ship, data, options))) is None:
         return
+    folder, plan = asked
     if not run.quiet and plan.seconds[0] > LONG:
         c.say(f"note: {in_time_of(plan)}")
     with (

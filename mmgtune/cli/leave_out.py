@@ -45,16 +45,12 @@ def command(
     from ..fitting import leave_out, plan_leave_out, write_left_out
     from ..posterior import leave_out_with_bands
     from ..report import render
-    from ..run_folders import claimed, refuse_taken
+    from ..run_folders import claimed
 
     ship, data = c.load(profile, trials)
-    folder = run.out or c.default_out(ship)
-    if not run.dry_run:
-        refuse_taken(folder, force=run.force, resume=run.resume)
-    plan = plan_leave_out(ship, data, options)
-    if run.dry_run:
-        c.print_plan(plan, folder, run.json)
+    if (asked := c.planned(run, ship, lambda: plan_leave_out(ship, data, options))) is None:
         return
+    folder, _ = asked
     with (
         claimed(folder, force=run.force, resume=run.resume, anew=True, reads=(profile, trials)),
         Progress(run.quiet, folder) as progress,
