@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,35 +24,59 @@ LONGEST = 200
 
 def read_parquet(path: Path, log_map: LogMap) -> Table:
     """The columns of a Parquet log that a map names.  Raises LogError where it cannot be read or lacks one."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    try:
-        # No worker threads: one still starting when the program ends would abort it.
-        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True)
-        names = list(file.schema_arrow.names)
-        LOG_COLUMNS.hold(len(names), str(path), LogError)
-        rows_of(file.metadata, path.stat().st_size, str(path), LogError)
+    with being_read(path):
+        schema = schema_of(path)
+        names = list(schema.names)
         wanted = columns_named(log_map, names, str(path))
         gathered = Rows(path, log_map, names, wanted)
         row = 1
-        _readable(file.schema_arrow, wanted, path)
+        _readable(schema, wanted, path)
         columns = sorted({names[k] for of in wanted.values() for k in of.values()})
-        texts = [name for name in columns if is_text(file.schema_arrow.field(name).type)]
-        # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
-        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=texts)
-        for batch in file.iter_batches(BATCH, columns=columns, use_threads=False):
-            block = pa.RecordBatch.from_arrays([shortened(one) for one in batch.columns], batch.schema.names)
-            block = block.to_pandas(use_threads=False)
+        for batch in batches(path, schema, columns, BATCH):
+            block = batch.to_pandas(use_threads=False)
             rows = np.arange(row, row + len(block), dtype=np.int64)
             row += len(block)
             gathered.add(partial(_column, block, names), rows)
-    except (OSError, ValueError, pa.ArrowException) as error:
-        why = reason(error)
-        raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
     table = gathered.table("row")
     gathered.judge(table)
     return table
+
+
+@contextmanager
+def being_read(path: Path) -> Iterator[None]:
+    """Raises LogError where a Parquet log turns out to be one that cannot be read."""
+    import pyarrow as pa
+
+    try:
+        yield
+    except (OSError, ValueError, pa.ArrowException) as error:
+        why = reason(error)
+        raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
+
+
+def schema_of(path: Path) -> Any:
+    """Columns of a Parquet log by name and type.  Raises LogError for one of more columns or rows than are read."""
+    file = _opened(path)
+    LOG_COLUMNS.hold(len(file.schema_arrow.names), str(path), LogError)
+    rows_of(file.metadata, path.stat().st_size, str(path), LogError)
+    return file.schema_arrow
+
+
+def batches(path: Path, schema: Any, columns: Sequence[str], size: int) -> Iterator[Any]:
+    """Some columns in batches of ``size`` rows, texts cut to what is looked at."""
+    import pyarrow as pa
+
+    texts = [name for name in columns if is_text(schema.field(name).type)]
+    # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
+    for batch in _opened(path, texts).iter_batches(size, columns=columns, use_threads=False):
+        yield pa.RecordBatch.from_arrays([_shortened(one) for one in batch.columns], batch.schema.names)
+
+
+def _opened(path: Path, repeated: Sequence[str] = ()) -> Any:
+    import pyarrow.parquet as pq
+
+    # No worker threads: one still starting when the program ends would abort it.
+    return pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=list(repeated))
 
 
 def _column(block: Any, names: Sequence[str], k: int) -> Any:
@@ -83,7 +108,7 @@ def is_text(kind: Any) -> bool:
     return bool(pa.types.is_string(value) or pa.types.is_large_string(value))
 
 
-def shortened(column: Any) -> Any:
+def _shortened(column: Any) -> Any:
     """A column with the length of its texts bounded."""
     import pyarrow as pa
     import pyarrow.compute as pc

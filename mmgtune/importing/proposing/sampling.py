@@ -20,7 +20,7 @@ from ..degrees import degrees
 from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
 from ..numerals import holds_numbers, numbers_in
-from ..parquet_log import is_text, shortened
+from ..parquet_log import batches, being_read, schema_of
 from ..sides import midships, sided, takes_side
 from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
 from ..table import MISSING
@@ -284,32 +284,18 @@ def _of_text(path: Path) -> Sample:
 
 
 def _of_parquet(path: Path) -> Sample:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
+    from pyarrow import types
 
-    from ...trial.footer import rows_of
-
-    try:
-        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True)
-        names = list(file.schema_arrow.names)
-        LOG_COLUMNS.hold(len(names), str(path), LogError)
-        rows_of(file.metadata, path.stat().st_size, str(path), LogError)
-        kinds = pa.types
+    with being_read(path):
+        schema = schema_of(path)
         flat = [
-            k
-            for k, one in enumerate(file.schema_arrow)
-            if not kinds.is_nested(one.type) and not kinds.is_binary(one.type) and names.count(one.name) == 1
+            one.name
+            for one in schema
+            if not types.is_nested(one.type) and not types.is_binary(one.type) and schema.names.count(one.name) == 1
         ]
-        columns = [names[k] for k in flat]
-        # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
-        repeated = [name for name in columns if is_text(file.schema_arrow.field(name).type)]
-        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=repeated)
-        batch = next(file.iter_batches(ROWS, columns=columns, use_threads=False), None)
-        texts = [] if batch is None else [_plain(shortened(batch.column(k)).to_pandas()) for k in range(len(flat))]
-    except (OSError, ValueError, pa.ArrowException) as error:
-        why = reason(error)
-        raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
-    return _made(path, {"format": "parquet"}, [names[k] for k in flat], [""] * len(flat), texts)
+        batch = next(batches(path, schema, flat, ROWS), None)
+        texts = [] if batch is None else [_plain(column.to_pandas()) for column in batch.columns]
+    return _made(path, {"format": "parquet"}, flat, [""] * len(flat), texts)
 
 
 def _plain(column: Any) -> Any:
