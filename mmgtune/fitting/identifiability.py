@@ -16,10 +16,10 @@ from .whitening import estimate_whitening
 NULL_RATIO = 1e-6
 """Singular values below this share of the largest are zero but for the rounding of finite differences."""
 
-CHECKED = 1e-3
+CHECK_STEP = 1e-3
 """Share of a step of 1 % over which a direction is checked by simulation: trading is exact along a curve only."""
 
-PART = 0.02
+LEAST_PART = 0.02
 """Share of a direction's largest weight from which a coefficient counts as taking part in it."""
 
 
@@ -195,7 +195,9 @@ def _errors(sensitivity: FloatArray, free: BoolArray) -> tuple[FloatArray, Float
         _, s, v = np.linalg.svd(sensitivity[:, free], full_matrices=False)
         kept = s > NULL_RATIO * s[0]
         covariance[np.ix_(free, free)] = (v[kept].T / s[kept] ** 2) @ v[kept]
-        taking_part = (np.abs(v[~kept]) > PART).any(axis=0) if (~kept).any() else np.zeros(int(free.sum()), dtype=bool)
+        taking_part = (
+            (np.abs(v[~kept]) > LEAST_PART).any(axis=0) if (~kept).any() else np.zeros(int(free.sum()), dtype=bool)
+        )
         deviation = np.sqrt(np.diag(covariance)[free])
         error[free] = np.where(taking_part, np.inf, deviation)
     return error, covariance, np.isfinite(error)
@@ -216,14 +218,14 @@ def _sparse(vectors: FloatArray) -> list[FloatArray]:
 def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vector: FloatArray) -> NullDirection:
     """The direction in percent of each member, scaled to 1 % of a member near the middle of the range, and checked."""
     box = problem.box
-    members = np.flatnonzero(np.abs(vector) > PART * np.abs(vector).max())
+    members = np.flatnonzero(np.abs(vector) > LEAST_PART * np.abs(vector).max())
     values = box.from_unit(unit)
     percent = 100.0 * vector * relative / np.where(values != 0.0, values, relative)
     # The unit is a member of middling weight; of those that scale alike the first target, whatever the rounding.
     sizes = [float(f"{abs(percent[i]):.3g}") for i in members]
     first = members[sizes.index(sorted(sizes)[len(sizes) // 3])]
     factor = 1.0 / percent[first]
-    step = CHECKED * vector * relative * factor / box.width
+    step = CHECK_STEP * vector * relative * factor / box.width
     shift = 0.0
     if len(problem.cases):
         states = problem.states(np.column_stack([unit, unit + step])).states

@@ -24,22 +24,22 @@ from .quadratic import Quadratic, flat_where_lost
 MOST_ITERATIONS = 80
 """Iterations of a solve at most."""
 
-QUIET = 1e-9
+LEAST_FALL = 1e-9
 """Relative fall of the objective that counts as none; two such iterations in a row end a start."""
 
 DAMPINGS = 10.0 ** np.array([-2.0, -0.7, 0.3, 2.0])
 """Multiples of the last damping tried side by side, as lanes of one call."""
 
-FIRM = 10.0
+FIRM_DAMPING = 10.0
 """Damping from which steps of initial states are damped too: far from any fit these alone would leave their range."""
 
-HARDLY = 1e-9
+PROMISE_DAMPING = 1e-9
 """Damping of the step whose promise is asked for, as a share of the curvature."""
 
-FORETOLD = 0.3
+PROMISE_TOLERANCE = 0.3
 """Share of a promised fall by which it may differ for the derivatives to be used once more."""
 
-SETTLED = 4
+ITERATIONS_BEFORE_REUSE = 4
 """Iterations before derivatives may be reused: at first, parameters that move later than others still find their
 way."""
 
@@ -49,7 +49,7 @@ FIRST_STEPS = 1
 OFFSET_ITERATIONS = 12
 """Most iterations of the initial states alone, with the targets held."""
 
-AHEAD = 0.1
+SHARE_AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
 
@@ -132,7 +132,7 @@ def solve(
     stop            asked before every iteration; True ends all starts where they are
     whiten          linear map of residuals (n_residuals, ...) within each case, such as ``Whitening.apply``; J is then
                     the sum of squares of the whitened residuals
-    tolerance       fall of the objective that counts as none, if larger than a share of QUIET
+    tolerance       fall of the objective that counts as none, if larger than a share of LEAST_FALL
     beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to the objective (not to
                     the J reported)
     trusting        a start also ends after the step from which the linear problem promises no more than the tolerance,
@@ -267,7 +267,7 @@ class _Minimised:
 
     def promised(self, model: Quadratic, at: FloatArray, scale: FloatArray) -> float:
         """Predicted fall of the objective by a step that is hardly damped."""
-        step, there = self.towards(model, at, HARDLY * scale)
+        step, there = self.towards(model, at, PROMISE_DAMPING * scale)
         hessian, gradient = self.derivatives(there, at)
         step = step - at
         return there.settling - 2.0 * float(gradient @ step) - float(step @ hessian @ step)
@@ -367,7 +367,7 @@ class _Starts:
                 self._damping[row] = min(self._damping[row], 1e-3)
             for k, factor in enumerate(DAMPINGS):
                 at, damping = models[i], self._damping[row] * factor
-                if self._trusting and damping > FIRM:
+                if self._trusting and damping > FIRM_DAMPING:
                     at = at.damped(damping)
                 nearby = unit[:, i, 0, k - 1] if k else None
                 unit[:, i, 0, k], at = self._aim.towards(at, self._z[:, row], damping * scales[i], nearby)
@@ -394,9 +394,9 @@ class _Starts:
 
     def _judged(self, row: int, gain: float, promised: float, last: bool) -> None:
         """Whether a start has ended, by what its step gained."""
-        foretold = gain > 0.0 and abs(gain - promised) <= FORETOLD * promised
-        self._told[row] = self._trusting and foretold and self._iterations[row] >= SETTLED
-        least = max(QUIET * self._value[row], self._tolerance)
+        foretold = gain > 0.0 and abs(gain - promised) <= PROMISE_TOLERANCE * promised
+        self._told[row] = self._trusting and foretold and self._iterations[row] >= ITERATIONS_BEFORE_REUSE
+        least = max(LEAST_FALL * self._value[row], self._tolerance)
         self._quiet[row] = self._quiet[row] + 1 if 0.0 < gain <= least else 0
         if last or abs(gain - promised) <= self._tolerance:
             self._converged[row], self._running[row] = True, False
@@ -431,14 +431,14 @@ def _accelerate(
     Sethna 2012, arXiv:1201.5885).  A bend that is no smaller than the step is not to be trusted and left out.
     """
     step, shift = tried[:, :, 0] - z[:, :, None], moved[:, :, 0] - d[:, :, None]
-    near = (z[:, :, None] + AHEAD * step).reshape(len(z), -1)
-    runs = residuals_of(near, (d[:, :, None] + AHEAD * shift).reshape(len(d), near.shape[1], 6))
+    near = (z[:, :, None] + SHARE_AHEAD * step).reshape(len(z), -1)
+    runs = residuals_of(near, (d[:, :, None] + SHARE_AHEAD * shift).reshape(len(d), near.shape[1], 6))
     runs = runs.reshape(len(runs), *step.shape[1:])
     tried[:, :, 1], moved[:, :, 1] = tried[:, :, 0], moved[:, :, 0]
     for i, at in enumerate(linear):
         with np.errstate(invalid="ignore"):
-            ahead = (runs[:, i] - at.residuals[:, None]) / AHEAD
-            curved = (2.0 / AHEAD) * (ahead - at.slope(step[:, i], shift[:, i]))
+            ahead = (runs[:, i] - at.residuals[:, None]) / SHARE_AHEAD
+            curved = (2.0 / SHARE_AHEAD) * (ahead - at.slope(step[:, i], shift[:, i]))
         for k, factor in enumerate(DAMPINGS):
             if not np.isfinite(runs[:, i, k]).all():
                 continue

@@ -52,7 +52,7 @@ from .weighing import Weight, weigh
 
 RESULT = "leave_out.json"
 
-SETTLED = 1e-4
+LEAST_FALL = 1e-4
 """Fall of J, as a share, that counts as none: scores of runs left out do not show it."""
 
 
@@ -376,7 +376,7 @@ class _ToAllRuns:
         hooks.on_phase("fitting all runs")
         ridge = edge_ridge(problem, options, before)
         starts = random_starts(problem, options, before, ())
-        tolerance = SETTLED * float(problem.costs(before[:, None])[0])
+        tolerance = LEAST_FALL * float(problem.costs(before[:, None])[0])
         ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=tolerance)
         best = min(ends, key=lambda end: end.J)
         return cls(profile, whole, trials, asked, options, problem, before, best.unit, best.J, ridge, weight)
@@ -398,7 +398,7 @@ class _ToAllRuns:
         hooks.on_phase(f"leaving out {', '.join(runs)}")
         problem = make_problem(self.profile, trials, self.options, others).with_weight(self.problem.weight)
         how: dict[str, Any] = {"ridge": self.ridge, "anchor": self.before, "stop": hooks.stop}
-        ends = solve(problem, self.best[:, None], tolerance=SETTLED * self.J, **how)
+        ends = solve(problem, self.best[:, None], tolerance=LEAST_FALL * self.J, **how)
         fitted = min(ends, key=lambda end: end.J + self.ridge * float(np.sum((end.unit - self.before) ** 2)))
         if self.options.loss == "huber" and not hooks.stop():
             problem, fitted = weigh_down(problem, fitted, self.ridge, self.before)

@@ -37,14 +37,15 @@ CLASSES = "classes"
 FEWEST = 3
 """Ships from which a spread is told."""
 
-ROUNDS = 500
-"""Rounds of expectation and maximisation at most; SETTLED is the change of a spread, as a share, that ends them."""
-SETTLED = 1e-4
+MOST_ROUNDS = 500
+"""Rounds of expectation and maximisation at most."""
+SPREAD_TOLERANCE = 1e-4
+"""Change of a spread, as a share, that ends them."""
 
 FARTHEST = 1e4
 """Distance of a class from what was known before, in units of how well it was, that no trials show: damage."""
 
-FLOOR = 1e-3
+LEAST_SPREAD = 1e-3
 """Least spread, as a share of how well a coefficient was known before: more alike no sisters are."""
 
 
@@ -152,15 +153,15 @@ def _pooled(sisters: SisterClass) -> Pooled:
         H[i][np.ix_(at, at)] = one.H * np.outer(known[at], known[at])
         b[i, at] = (one.b - one.H @ before[at]) * known[at]
     mean, spread = np.zeros(len(names)), np.ones(len(names))
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         P = np.linalg.inv(H + np.diag(spread**-2.0))
         each = np.einsum("ijk,ik->ij", P, b + mean / spread**2)
         mean = each.sum(axis=0) / spread**2 / (n_ships / spread**2 + 1.0)
         new = np.sqrt(np.mean((each - mean) ** 2 + np.diagonal(P, axis1=1, axis2=2), axis=0))
-        new = np.maximum(new, FLOOR)
+        new = np.maximum(new, LEAST_SPREAD)
         change = float(np.abs(new / spread - 1.0).max(initial=0.0))
         spread = new
-        if change < SETTLED:
+        if change < SPREAD_TOLERANCE:
             break
     # What each ship says of the mean: her trials, blurred by the spread.
     P = np.linalg.inv(H + np.diag(spread**-2.0))

@@ -11,13 +11,13 @@ from ..backends import Cases
 from .least_squares import LeastSquaresResult, solve
 from .problem import FitProblem
 
-ROUNDS = 6
+MOST_ROUNDS = 6
 """Rounds of weighting outliers."""
 
-USUAL = 3.0
+USUAL_DEVIATIONS = 3.0
 """Robust standard deviations within which a residual counts by its square, beyond which by its size."""
 
-SETTLED = 1e-4
+LEAST_MOVE = 1e-4
 """Move within the unit cube that counts as none."""
 
 
@@ -34,7 +34,7 @@ def huber_weights(cases: Cases, residuals: FloatArray) -> FloatArray:
         here = counted[:, :, channel]
         if not here.any():
             continue
-        usual = USUAL * robust_deviation(size[:, :, channel][here])
+        usual = USUAL_DEVIATIONS * robust_deviation(size[:, :, channel][here])
         if usual > 0.0:
             factors[:, :, channel] = np.minimum(1.0, usual / np.maximum(size[:, :, channel], usual))
     return factors
@@ -49,13 +49,13 @@ def weigh_down(
     Iteratively reweighted least squares with Huber's weights; ridge and anchor as for ``solve``.
     """
     plain = problem
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         weights = huber_weights(plain.cases, plain.with_offsets(best.offsets).residuals(best.unit[:, None])[0])
         problem = plain.with_cases(replace(plain.cases, weight=plain.cases.weight * weights))
         problem = problem.with_offsets(best.offsets)
         better = solve(problem, best.unit[:, None], ridge=ridge, anchor=anchor)[0]
         moved = float(np.max(np.abs(better.unit - best.unit)))
         best = better
-        if moved < SETTLED:
+        if moved < LEAST_MOVE:
             break
     return problem.with_offsets(best.offsets), best

@@ -30,16 +30,16 @@ from .least_squares import LeastSquaresResult, solve
 from .problem import FitProblem
 from .quadratic import flat_where_lost
 
-ROUNDS = 8
+MOST_ROUNDS = 8
 """Fits at most."""
 
-SETTLED = 0.02
+WEIGHT_TOLERANCE = 0.02
 """Change of s2, as a share, that ends the rounds."""
 
-CLOSE = 0.01
+FIT_TOLERANCE = 0.01
 """Fall of what is minimised over s2 that counts as none in these fits: s2 does not show it."""
 
-FALL = 1e-9
+LEAST_SHARE = 1e-9
 """s2 is kept above this share of its first value: residuals of noise-free trials vanish."""
 
 
@@ -50,7 +50,7 @@ class Weight:
     s2           the weight
     independent  differences J counts for, by channel
     learnt       coefficients the trials determine against the terms, by channel
-    rounds       fits it took; settled whether the last changed it by less than ``SETTLED``
+    rounds       fits it took; settled whether the last changed it by less than ``WEIGHT_TOLERANCE``
     """
 
     s2: float
@@ -77,16 +77,16 @@ def weigh(
         return problem.with_weight(1.0), Weight(1.0, {}, {}, 0, True)
     at = LeastSquaresResult(start, problem.offsets, 0.0, 0, True)
     found = weight_at(problem.with_weight(1.0), at, learning=False)
-    least = FALL * found.s2
-    for k in range(ROUNDS):
+    least = LEAST_SHARE * found.s2
+    for k in range(MOST_ROUNDS):
         if stop():
             break
         weighed = problem.with_weight(found.s2).with_offsets(at.offsets)
-        at = solve(weighed, at.unit[:, None], stop=stop, tolerance=CLOSE * found.s2)[0]
+        at = solve(weighed, at.unit[:, None], stop=stop, tolerance=FIT_TOLERANCE * found.s2)[0]
         new = replace(weight_at(weighed.with_offsets(at.offsets), at), rounds=k + 1)
         new = replace(new, s2=max(new.s2, least))
         change = abs(new.s2 / found.s2 - 1.0)
-        found = replace(new, settled=change < SETTLED)
+        found = replace(new, settled=change < WEIGHT_TOLERANCE)
         if found.settled:
             break
     return problem.with_weight(found.s2), found

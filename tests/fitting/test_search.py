@@ -147,7 +147,7 @@ def test_derivatives_that_foretold_a_step_serve_the_next_to_the_same_end(problem
 
     def end(settled):
         made.clear()
-        monkeypatch.setattr(least_squares, "SETTLED", settled)
+        monkeypatch.setattr(least_squares, "ITERATIONS_BEFORE_REUSE", settled)
         (found,) = solve(estimated, start, tolerance=1e-9, trusting=True)
         return found, len(made)
 
