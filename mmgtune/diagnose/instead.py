@@ -82,7 +82,7 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
 
     tuned  the model re-tuned without any cause
 
-    None where there is no such cause, or the search was stopped.
+    None where there is no such cause, or it ends at an end of its range, or the search was stopped.
     """
     if not bench.targets:
         return None
@@ -113,6 +113,9 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
         return None
     end = best.point
     end = bench.refit(end.names, end.unit[:, None], end.offsets, integrator=end.integrator, tolerance=PRECISE)
+    unit = dict(zip(end.names, end.unit, strict=True))
+    if any(not 0.0 < unit[name] < 1.0 for name in best.hypothesis.names):  # no such size is thought possible
+        return None
     sizes = {name: Estimate(name, value, None, None, None) for name, value in bench.values(end).items()}
     effect = best.hypothesis.effect
     own = {name: size for name, size in sizes.items() if name in best.hypothesis.names}

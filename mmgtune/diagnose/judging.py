@@ -34,7 +34,7 @@ from .retuned import retuned, unlike_any
 from .search import Found, Step, rivals_of, step_of
 from .separate import Suggestion, suggest
 from .unseen import Unseen
-from .verdict import Doubted, Leading
+from .verdict import MOSTLY, Doubted, Leading
 from .voyages import Choice
 from .workbench import Point, Workbench
 
@@ -85,6 +85,8 @@ class Judge:
             if other.names_causes and (other.explains_all if differs else other.explains_nearly_all):
                 result, found = other, fewer
                 break
+            if doubted is None and other.explained_share >= MOSTLY and not other.unclear:
+                result, found = other, fewer  # as little is believed, and it takes less
             if doubted is not None:
                 result = replace(result, leading=Leading.of(result, other))
         if result.is_chance and not self.before.noticed and not self.hooks.stop():

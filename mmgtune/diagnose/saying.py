@@ -115,7 +115,7 @@ def _of_none(answer: Answer) -> str:
     few = ""
     if answer.gain.too_few and answer.choice is None:
         few = (
-            f"Fitted to the other runs, it errs by {answer.gain.left:,.2g} times the noise on one left out: these "
+            f"Fitted to the other runs, it errs by {_times(answer.gain.left)} times the noise on one left out: these "
             "are too few for all that is re-tuned."
         )
     if far := moved_in_words(answer.moved):
@@ -131,6 +131,11 @@ def _of_none(answer: Answer) -> str:
     return " ".join(filter(None, parts))
 
 
+def _times(ratio: float) -> str:
+    """A ratio to two figures, without a power of ten."""
+    return f"{float(f'{ratio:.2g}'):,g}" if ratio < 1e6 else f"{ratio:,.0f}"
+
+
 _CANNOT_NAME = "Something is wrong that this program cannot name."
 
 
@@ -141,7 +146,7 @@ def _of_the_unknown(answer: Answer) -> Said:
         summed = " + ".join(dict.fromkeys(tag for tag, _ in answer.contributions))
         best = (
             f"The best partial explanation, {summed}, removes {_explained(answer)} of the error it was found on, but "
-            f"{answer.unclear}: it stands for something else, or for more than these trials can tell apart."
+            f"{answer.unclear}: this sum stands for something else, or for more than these trials can tell apart."
         )
         return Said(_CANNOT_NAME, best, answer.leading.sentence if answer.leading else "")
     if answer.tells_a_part and not answer.leftover.noticed:
@@ -156,7 +161,7 @@ def _of_the_unknown(answer: Answer) -> Said:
     if answer.misses_test:
         return Said(
             "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
-            f"but leaves an error {answer.gain.left:,.3g} times the noise of the sensors on trials kept for "
+            f"but leaves an error {_times(answer.gain.left)} times the noise of the sensors on trials kept for "
             "testing, more than coefficients known no better would."
         )
     if answer.of_a_sensor:

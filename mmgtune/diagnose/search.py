@@ -379,7 +379,7 @@ def _in_plainer_form(bench: Workbench, found: Found, cause: Hypothesis) -> tuple
     for refit in sorted(plainer, key=lambda one: len(one.hypothesis.names)):
         other = _with(bench, fewer, refit)
         saved = (len(cause.names) - len(refit.hypothesis.names)) * bench.price
-        if other.chi2 - found.final.chi2 < saved + ENOUGH:
+        if (other.chi2 - found.final.chi2) / refit.score.inflation < saved + ENOUGH:
             return refit.hypothesis, other
     return None
 

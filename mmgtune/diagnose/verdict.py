@@ -11,7 +11,7 @@ from typing import Any
 
 from ..displayed import Plotted
 from ..options import DiagnoseOptions
-from ..phrases import in_percent
+from ..phrases import in_percent, listed
 from ..profile import ShipProfile
 from ..trial import Coverage
 from . import winds
@@ -232,7 +232,7 @@ class Answer(Plotted):
         if why := self._bent:
             return why
         unsized = [cause.tag for cause in self.causes if not cause.sized]
-        not_told = f"{' and '.join(unsized)} may be nothing at all" if unsized else ""
+        not_told = f"how large {listed(unsized)} would be is not told, if anything at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
         if len(brought) < 2:
