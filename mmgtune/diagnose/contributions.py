@@ -173,6 +173,7 @@ class Contribution:
             "error_over_noise": dict(self.channels or {}),
             "index_changes": dict(self.indices or {}),
             "share_of_hull": self.of_hull,
+            "moves_another": self.moves,
         }
 
 

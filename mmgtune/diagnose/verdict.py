@@ -74,7 +74,7 @@ BESIDE = 0.02
 
 OF_MANY = 0.05
 """Share of the fall of chi-squared that must be lost without any one of three causes, where not all of them can be told
-from others: a third that brings less is the form of the first two."""
+from others, and none of which has values of each run: a third that brings less is the form of the first two."""
 
 LEADS = 0.8
 """Share of the error that the first cause of a sum must remove alone, where nothing was fitted too, for its size to be
@@ -231,7 +231,7 @@ class Answer(Plotted):
             return "it leaves far more than noise, and more than gusts of such a wind would"
         if why := self._bent:
             return why
-        unsized = [cause.tag for cause in self.causes if not cause.sized]
+        unsized = list(dict.fromkeys(cause.tag for cause in self.causes if not cause.sized))
         not_told = f"how large {listed(unsized)} would be is not told, if anything at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
@@ -243,7 +243,8 @@ class Answer(Plotted):
             return "all that they remove is little beside noise, and other sums would"
         if self.leftover.unknown > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
-        if len(brought) > 2 and self.groups and min(one.seen for one in brought) < OF_MANY:
+        bends = any(cause.runs for cause in self.causes)
+        if len(brought) > 2 and self.groups and (bends or min(one.seen for one in brought) < OF_MANY):
             return "not all of them can be told from others"
         several = sum(bool(cause.runs) for cause in self.causes) > 1
         if several and (len(brought) > 2 or not self.explains_all):

@@ -9,7 +9,7 @@ from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.beliefs import let_go
 from mmgtune.diagnose.detecting import told_apart
 from mmgtune.diagnose.intervals import estimates
-from mmgtune.diagnose.linear import Tuned, linearise
+from mmgtune.diagnose.linear import BOXED, Tuned, _from_bounds, linearise
 from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.model import Model
 from mmgtune.motions import simulate_trials
@@ -120,3 +120,35 @@ def test_an_interval_knows_how_far_targets_can_go(sailed):
         found = estimates(bench, at)[name]
         widths.append(found.high - found.low)
     assert widths[0] < 0.5 * widths[1]
+
+
+def test_a_target_at_its_bound_may_be_within_it_as_far_as_chi_squared_lets_it(suzaku):
+    """From nowhere near its optimum it hardly gets away; where all fits alike it may be anywhere in its box."""
+    bench = make_workbench(suzaku.profile, list(load_trials("suzaku").trials.values())[:1], DiagnoseOptions())
+    names = ("rudder.eps", "propeller.t_P", "hull.R_0", "rudder.a_H")
+    at = Point(names, np.array([0.0, 0.4, 1.0, 1.0]), np.zeros((1, 6)), 0.0, bench.problem.integrator)
+    columns = np.array([[3.0, 1.0, 0.0, 5.0], [0.0, 1.0, 4.0, 5.0]])
+    of_each = _from_bounds(bench, at, ["rudder.a_H"], np.array([-50.0, 0.0]), columns).T
+    assert of_each == pytest.approx(np.array([[3.0 / 150.0, 0.0], [0.0, 4.0 * BOXED]]))
+
+
+def test_an_interval_knows_that_a_target_at_its_bound_may_be_within_it(sailed):
+    """Thrust was told as 0.841 +- 0.006 for 0.88: t_P had ended at its bound, and only their product shows."""
+    profile, trials = sailed
+    t_P, name, widths = "propeller.t_P", "effects.thrust.factor", {}
+    for targets in (("rudder.eps",), ("rudder.eps", t_P)):
+        bench = make_workbench(profile, trials[:1], DiagnoseOptions(targets=targets, effects=("thrust",)), [name])
+        names = (*bench.targets, name)
+        unit = bench.null(names)
+        if t_P in names:
+            box = bench.sub_box(names)
+            lowest = float(box.from_unit(np.zeros(len(names)))[names.index(t_P)])
+            same = (1.0 - profile.value(t_P)) / (1.0 - lowest)
+            unit = box.to_unit(np.array([profile.value("rudder.eps"), lowest, same]))
+        for z in (0.0, 1e-9) if t_P in names else (None,):
+            unit = np.array([z if one == t_P else own for one, own in zip(names, unit, strict=True)])
+            there = bench.refit(names, unit[:, None], np.zeros((1, 6)), max_iterations=0)
+            found = estimates(bench, there)[name]
+            widths[z] = found.high - found.low
+    assert widths[0.0] > 1.5 * widths[None]
+    assert widths[0.0] <= 1.01 * widths[1e-9]  # as one inside, or less, as chi-squared grows inwards

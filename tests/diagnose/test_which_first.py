@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -10,6 +12,7 @@ from mmgtune.diagnose import search
 from mmgtune.diagnose.hypotheses import Hypothesis
 from mmgtune.diagnose.refit import Refit, believable_first, kin_among, rivals_among
 from mmgtune.diagnose.refitting import Refitting
+from mmgtune.diagnose.search import Step
 from mmgtune.effects import find_effect
 
 N_RESIDUALS, BEFORE = 10_000, 15_000.0
@@ -47,7 +50,7 @@ def test_values_that_differ_stand_first_where_they_leave_far_less(differing, ali
 def fitted(tag, gain, inflation, p_value, unvisited=""):
     """A refit of one parameter, along a signature of which noise has ``inflation``."""
     akin = {"wave-drift": ("wind",)}.get(tag, ())
-    hypothesis = SimpleNamespace(by="", tag=tag, effect=SimpleNamespace(akin=akin))
+    hypothesis = SimpleNamespace(by="", tag=tag, bases=(), holds=lambda _: False, effect=SimpleNamespace(akin=akin))
     known = hypothesis, SimpleNamespace(inflation=inflation), SimpleNamespace(chi2=0.0)
     return Refit(*known, gain, 9.0, gain / inflation - 9.0, 1.0, p_value, unvisited)
 
@@ -81,19 +84,38 @@ def test_a_wind_may_be_meant_where_the_drift_of_waves_fits_badly(wind, kin):
     assert rivals_among([drift, *others]) == []
 
 
-@pytest.mark.parametrize(("chi2", "plainer"), [(9_510.0, True), (9_530.0, False)])
-def test_one_rate_of_the_rudder_stands_for_two_that_are_alike(monkeypatch, chi2, plainer):
-    """A gear of 1.2 deg/s was told as one of 1.214 to starboard and 1.201 to port."""
+@pytest.mark.parametrize(
+    ("chi2", "inflation", "plainer"), [(9_510.0, 1.0, True), (9_530.0, 1.0, False), (9_730.0, 200.0, True)]
+)
+def test_one_rate_of_the_rudder_stands_for_two_that_are_alike(monkeypatch, chi2, inflation, plainer):
+    """A gear of 1.2 deg/s was told as one of 1.214 to starboard and 1.201 to port; one of 2.7 as one of 2.73 and 2.67,
+    where orders logged every 2 s leave much open."""
     gear = find_effect("steering-lag")
     two, one = Hypothesis(gear, ("to_starboard", "to_port")), Hypothesis(gear, ("rate_limit",))
     other = Hypothesis(find_effect("dead-time"), ("seconds",))
-    step = SimpleNamespace(refits=[SimpleNamespace(hypothesis=of) for of in (two, other, one)])
+    score = SimpleNamespace(inflation=inflation)
+    step = SimpleNamespace(refits=[SimpleNamespace(hypothesis=of, score=score) for of in (two, other, one)])
     found = SimpleNamespace(causes=[two], final=SimpleNamespace(chi2=9_500.0), steps=[step])
     there = SimpleNamespace(chi2=chi2)
     monkeypatch.setattr(search, "without", lambda *_: None)
     monkeypatch.setattr(search, "_with", lambda *_: there)
     answer = search._in_plainer_form(SimpleNamespace(price=9.0), found, two)
     assert answer == ((one, there) if plainer else None)
+
+
+@pytest.mark.parametrize(("gain", "rivals"), [(5_645.0, ["rpm-scale"]), (4_000.0, [])])
+def test_what_was_near_to_another_form_of_a_cause_is_its_rival(monkeypatch, gain, rivals):
+    """A displacement that did as well as a factor on the revolutions was exchanged for a draught, and told alone."""
+    draught, other = Hypothesis(find_effect("loading"), ("draught",)), fitted("rpm-scale", 5_640.0, 1.0, 0.0)
+    first = [fitted("loading", 5_648.0, 1.0, 0.0), other]
+    second = [replace(fitted("loading", 24.0, 1.0, 0.0), hypothesis=draught)]
+    base = SimpleNamespace(chi2=20_000.0, names=())
+    steps = [Step(base, None, [], refits, [], True, "") for refits in (first, second)]
+    found = SimpleNamespace(causes=[draught], final=SimpleNamespace(chi2=base.chi2 - 5_650.0), steps=steps)
+    monkeypatch.setattr(search, "without", lambda *_: base)
+    monkeypatch.setattr(search, "hopeless_beside", lambda *_: math.inf)
+    monkeypatch.setattr(search, "_with", lambda *_: SimpleNamespace(chi2=base.chi2 - gain))
+    assert [one.hypothesis.tag for one in search.rivals_of(None, found, draught)] == rivals
 
 
 @pytest.mark.parametrize(
