@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.quantities import Lanes
 from ..units import DEG
 from .effect import ActuatorEffect, Parameter
@@ -46,12 +47,12 @@ EFFECT = ActuatorEffect(
         "play": Parameter(
             "angle the linkage moves before the blade follows, from one end of its play to the other",
             "rad",
-            low=-1e-12,
+            low=AT_LEAST_0,
             bounds=lambda _: (0.0, 12.0 * DEG),
             typical=lambda _: 2.0 * DEG,
             bounds_source="beyond 12 deg anyone would see it",
         ),
-        "noise": Parameter("how far noise of the logged angle reaches, which moves no blade", "rad", low=-1e-12),
+        "noise": Parameter("how far noise of the logged angle reaches, which moves no blade", "rad", low=AT_LEAST_0),
     },
     pivots={"noise": lambda _: 0.0},
     read_off={"noise": lambda visited: REACH * min(visited.rudder_noise, NOISIEST)},

@@ -5,6 +5,7 @@ The time is the same for every order (assumption): that of relays and pumps, bes
 
 from typing import NamedTuple
 
+from ..components import AT_LEAST_0
 from ..physics.quantities import Lanes
 from .effect import ClockEffect, Parameter
 
@@ -27,7 +28,7 @@ EFFECT = ClockEffect(
         "seconds": Parameter(
             "time from the logged rudder angle to that of the blade",
             "s",
-            low=-1e-12,
+            low=AT_LEAST_0,
             bounds=lambda ship: (0.0, 0.5 * ship.L / ship.U),
             typical=lambda ship: 0.05 * ship.L / ship.U,
             bounds_source="half the time of a ship length",

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 
-from ..components import Component, Field
+from ..components import AT_LEAST_0, Component, Field
 from ..inputs import Role
 from ..physics.quantities import KNOWN, Force, Lanes, State, Surroundings
 from ..units import DEG
@@ -114,7 +114,7 @@ def factor_on_measured(what: str, most: float, typical: float, source: str) -> P
     return Parameter(
         f"factor on {what} measured in the trial",
         default=1.0,
-        low=-1e-12,
+        low=AT_LEAST_0,
         high=5.0,
         null=0.0,
         bounds=lambda _: (0.0, most),

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.elementary import where
 from ..physics.quantities import Force, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter, Scale
@@ -62,7 +63,7 @@ EFFECT = ForceEffect(
     fields={
         "share": Parameter(
             "share of the logged revolutions lost where the ship makes no way",
-            low=-1e-12,
+            low=AT_LEAST_0,
             high=1.0,
             bounds=lambda _: (0.0, 0.7),
             typical=lambda _: 0.15,

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from ..components import AT_LEAST_0
 from ..physics.quantities import Lanes
 from ..units import DEG
 from .effect import CoefficientsEffect, Parameter
@@ -41,7 +42,7 @@ EFFECT = CoefficientsEffect(
     fields={
         "factor": Parameter(
             "flap angle over the profile's",
-            low=-1e-12,
+            low=AT_LEAST_0,
             high=3.0,
             null=1.0,
             bounds=lambda _: (0.0, 2.0),

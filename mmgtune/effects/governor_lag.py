@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from ..components import AT_LEAST_0
 from ..physics.following import followed
 from ..physics.quantities import Lanes
 from .effect import ActuatorEffect, Parameter
@@ -45,7 +46,7 @@ EFFECT = ActuatorEffect(
         "time_constant": Parameter(
             "time constant of the shaft behind the logged revolutions",
             "s",
-            low=-1e-12,
+            low=AT_LEAST_0,
             bounds=lambda ship: (0.0, 5.0 * ship.L / ship.U),
             typical=lambda ship: 1.0 * ship.L / ship.U,
             bounds_source="the time of five ship lengths",

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from ..components import AT_LEAST_0
 from ..physics.following import followed
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
@@ -40,7 +41,7 @@ def _constant(what: str) -> Parameter:
     return Parameter(
         f"time constant of the heading shown, {what}",
         "s",
-        low=-1e-12,
+        low=AT_LEAST_0,
         bounds=lambda ship: (0.0, 0.5 * ship.L / ship.U),
         typical=lambda ship: 0.03 * ship.L / ship.U,
         bounds_source="half the time of a ship length",

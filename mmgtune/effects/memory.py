@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.quantities import Force, Forces, Lanes
 from .effect import LagEffect, Parameter
 
@@ -50,7 +51,7 @@ def _constant(words: str) -> Parameter:
     return Parameter(
         f"time constant of {words}",
         "s",
-        low=-1e-12,
+        low=AT_LEAST_0,
         bounds=lambda ship: (0.0, 1.5 * ship.L / ship.U),
         typical=lambda ship: 0.2 * ship.L / ship.U,
         bounds_source="the time of one and a half ship lengths",
@@ -87,7 +88,7 @@ EFFECT = LagEffect(
         "share": Parameter(
             "share of the force that follows so",
             null=1.0,
-            low=-1e-12,
+            low=AT_LEAST_0,
             high=2.0,
             bounds=lambda _: (0.2, 1.3),
             bounds_source="a choice: with less there is hardly a memory",

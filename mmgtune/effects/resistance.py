@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.constants import GRAVITY
 from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter, Scale
@@ -68,7 +69,7 @@ EFFECT = ForceEffect(
             typical=lambda ship: 0.1 / _froude(ship),
             bounds_source="a coefficient that is gone at rest, or twice as large, and a fifth beyond",
         ),
-        "pivot": Parameter("speed at which the factor holds, whatever the slope", "m/s", low=-1e-12),
+        "pivot": Parameter("speed at which the factor holds, whatever the slope", "m/s", low=AT_LEAST_0),
     },
     pivots={"pivot": lambda ship: ship.U},
     varies=("factor",),

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.quantities import Lanes, State
 from .effect import Parameter, SensorEffect, factor_about_one
 from .visited import Visited
@@ -79,7 +80,7 @@ EFFECT = SensorEffect(
             typical=lambda ship: 0.05 / ship.U,
             bounds_source="four tenths over the approach speed: half of it shows the half of that",
         ),
-        "pivot": Parameter("speed ahead at which the factor holds, whatever the growth", "m/s", low=-1e-12),
+        "pivot": Parameter("speed ahead at which the factor holds, whatever the growth", "m/s", low=AT_LEAST_0),
     },
     pivots={"pivot": lambda ship: ship.U},
     variants=(("factor",), ("both",), ("factor", "grows")),

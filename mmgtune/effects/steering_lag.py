@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.elementary import where
 from ..physics.following import INSTANT, followed
 from ..physics.quantities import Lanes
@@ -67,7 +68,7 @@ EFFECT = ActuatorEffect(
         "time_constant": Parameter(
             "time constant of the steering gear behind the logged angle",
             "s",
-            low=-1e-12,
+            low=AT_LEAST_0,
             bounds=lambda ship: (0.0, 0.6 * ship.L / ship.U),
             typical=lambda ship: 0.075 * ship.L / ship.U,
             bounds_source="the time the ship takes for six tenths of her length",

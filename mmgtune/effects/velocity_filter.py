@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from ..components import AT_LEAST_0
 from ..physics.following import followed
 from ..physics.frame import to_earth, to_ship
 from ..physics.quantities import Lanes, State
@@ -61,7 +62,7 @@ def _constant(of: str) -> Parameter:
     return Parameter(
         f"time constant of the low-pass {of}",
         "s",
-        low=-1e-12,
+        low=AT_LEAST_0,
         bounds=lambda ship: (0.0, 0.8 * ship.L / ship.U),
         typical=lambda ship: 0.05 * ship.L / ship.U,
         bounds_source="eight tenths of the time of a ship length",

@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.elementary import sin
 from ..physics.frame import to_ship
 from ..physics.quantities import Force, Forces, Lanes, State, Surroundings
@@ -40,7 +41,7 @@ EFFECT = ForceEffect(
         "force": Parameter(
             "mean force",
             "N",
-            low=-1e-12,
+            low=AT_LEAST_0,
             chart="polar",
             bounds=lambda ship: (0.0, 0.03 * ship.force),
             typical=lambda ship: 0.003 * ship.force,
@@ -55,7 +56,7 @@ EFFECT = ForceEffect(
         "ahead": Parameter(
             "factor on the force along the ship",
             null=1.0,
-            low=-1e-12,
+            low=AT_LEAST_0,
             bounds=lambda _: (0.0, 2.0),
             bounds_source="from none to twice that of a force along one line",
         ),

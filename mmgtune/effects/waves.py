@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.elementary import cos, sin, where
 from ..physics.frame import to_ship
 from ..physics.quantities import Force, Forces, Lanes, State, Surroundings
@@ -65,7 +66,7 @@ EFFECT = ForceEffect(
         "height": Parameter(
             "significant wave height where the trial has no measured waves",
             "m",
-            low=-1e-12,
+            low=AT_LEAST_0,
             chart="polar",
             bounds=lambda ship: (0.0, float(height_limit(ship.L))),
             typical=lambda ship: 0.3 * float(height_limit(ship.L)),

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..physics.elementary import cos, sin, where
 from ..physics.frame import to_ship
 from ..physics.quantities import HARMONICS, Force, Forces, State, Surroundings
@@ -25,7 +26,7 @@ def _factor(what: str) -> Parameter:
     return Parameter(
         f"factor on the {what} of the formulas",
         null=1.0,
-        low=-1e-12,
+        low=AT_LEAST_0,
         bounds=lambda _: (0.25, 2.5),
         bounds_source="from a quarter to two and a half times",
     )
@@ -63,7 +64,7 @@ EFFECT = ForceEffect(
         "speed": Parameter(
             "true wind speed where the trial has no measured wind",
             "m/s",
-            low=-1e-12,
+            low=AT_LEAST_0,
             chart="polar",
             bounds=lambda ship: (0.0, 10.0 * ship.U),
             typical=lambda ship: 1.6 * ship.U,
