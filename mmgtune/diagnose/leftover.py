@@ -57,6 +57,9 @@ WINDOWS = (20.0, 60.0)
 PAIRS = {"heading and yaw rate": ("psi", "r"), "position and velocity": ("x", "y", "u", "v_m")}
 """Channels that the same motion shows in."""
 
+SWELLS = 3.0
+"""Periods of a swell that residuals are averaged over to see what is left beside it."""
+
 BLOCK = 20.0
 """Time [s] residuals are averaged over before asking what explains them."""
 
@@ -159,9 +162,7 @@ class Leftover(Brief):
 def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
     residuals = residuals_of(bench, point)
-    # Second differences do not show the noise of rounding where a channel moves little.
-    shown = np.maximum(_white(residuals), by_channel(bench.trials, rounding_noise))
-    level = np.where(shown > 0.0, np.maximum(shown, 1e-3 * least_noise(bench.trials)), shown)
+    level = _level(bench, residuals)
     left_open = _left_open(bench, point)
     excess, excused = {}, {}
     for k, name in enumerate(STATES):
@@ -185,6 +186,35 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         at_most={name: at_most for name, (_, at_most) in slow.items()},
         changed=_changed(bench),
     )
+
+
+def _level(bench: Workbench, residuals: Sequence[FloatArray]) -> FloatArray:
+    """(6,) deviation of the white noise of the channels."""
+    # Second differences do not show the noise of rounding where a channel moves little.
+    shown = np.maximum(_white(residuals), by_channel(bench.trials, rounding_noise))
+    return np.where(shown > 0.0, np.maximum(shown, 1e-3 * least_noise(bench.trials)), shown)
+
+
+def beside_swell(bench: Workbench, point: Point, period: float) -> float:
+    """Largest variance of a channel, over that of its white noise, of what is left but for swinging of a period [s].
+
+    Averages over three periods, with weights of a cosine, hold nothing of that, and a little of the noise.
+    """
+    residuals = residuals_of(bench, point)
+    level = _level(bench, residuals)
+    averages, gain = [], 0.0
+    for trial, values in zip(bench.trials, residuals, strict=True):
+        n = max(2, round(SWELLS * period / float(np.median(np.diff(trial.t)))))
+        weights = np.hanning(n + 2)[1:-1] / np.sum(np.hanning(n + 2))
+        gain = max(gain, float(np.sum(weights**2)))
+        starts = range(1, len(values) - n + 1, n)
+        averages += [weights @ values[i : i + n] for i in starts]
+    if not averages:
+        return math.inf
+    of_channel = np.array(averages)
+    known = np.isfinite(of_channel).any(axis=0) & (level > 0.0)
+    variance = np.nanmean(of_channel[:, known] ** 2, axis=0) / level[known] ** 2
+    return float(np.max(variance - gain, initial=0.0))
 
 
 def _changed(bench: Workbench) -> dict[str, tuple[str, ...]]:

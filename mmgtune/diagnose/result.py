@@ -32,6 +32,7 @@ class Diagnosis(Answer):
     whereabouts  where the error lives, where nothing explains it; None else
     jumped    runs whose position jumps, and that were taken in parts there, in words
     contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
+    swell     that the ship swings in waves, and that nothing is left beside that; "" where it is not so
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
     leading      the first of the causes, where these are not believed together and it removes most alone; None else
     together  what was found without the trials kept for testing, where these had to be looked at too; None else

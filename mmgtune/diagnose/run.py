@@ -34,7 +34,7 @@ from .contributions import set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
 from .jumped import in_parts
-from .leftover import leftover
+from .leftover import NOTICED, SWELLS, beside_swell, leftover
 from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
 from .result import Diagnosis
@@ -157,10 +157,20 @@ def _looked_at(
     ]
     odd += [f"{capital(said)}." for said in reversals(bench.model, seen)]
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
-    contradicted = ""
-    if result.verdict == "unexplained" and choice is None:
-        contradicted = _contradicted(whole) or _swinging(whole, profile.L_pp)
-    return replace(result, warnings=warnings, contradicted=contradicted, jumped=tuple(jumped))
+    result = replace(result, warnings=warnings, jumped=tuple(jumped))
+    if result.verdict != "unexplained" or choice is not None:
+        return result
+    if contradicted := _contradicted(whole):
+        return replace(result, contradicted=contradicted)
+    swinging, period = _swinging(whole, profile.L_pp)
+    if not swinging:
+        return result
+    if not result.causes and not unseen.test and beside_swell(bench, found.final, period) < NOTICED:
+        beside = (
+            f"Averaged over {SWELLS:g} such periods, what the re-tuned model leaves is noise: nothing else is wrong."
+        )
+        return replace(result, swell=f"{swinging}. {beside}", whereabouts=None)
+    return replace(result, contradicted=f"{swinging}: that may be all that is left.")
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
@@ -178,14 +188,15 @@ def _contradicted(trials: Mapping[str, Trial]) -> str:
     )
 
 
-def _swinging(trials: Mapping[str, Trial], L_pp: float) -> str:
-    """That the ship swings in most trials as in waves, which may be all that is left; "" where she does not."""
+def _swinging(trials: Mapping[str, Trial], L_pp: float) -> tuple[str, float]:
+    """That the ship swings in most trials as in waves, without a full stop, and the period [s]; "" where not."""
     periods = [period_of(found) for trial in trials.values() if (found := swings(trial, L_pp))]
     of = _most(len(periods), trials)
-    return of and (
-        f"In {of} the ship swings from beginning to end with a period of {np.median(periods):.2g} s, as in waves, "
-        "which no manoeuvring model follows: that may be all that is left."
-    )
+    if not of:
+        return "", 0.0
+    period = float(np.median(periods))
+    swings_so = f"the ship swings from beginning to end with a period of {period:.2g} s, as in waves"
+    return f"In {of} {swings_so}, which no manoeuvring model follows", period
 
 
 def _most(number: int, trials: Mapping[str, Trial]) -> str:

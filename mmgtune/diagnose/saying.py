@@ -101,6 +101,8 @@ def _of_causes(answer: Answer) -> str:
 
 def _of_none(answer: Answer) -> str:
     """That no cause shows, what re-tuning changed, and what the log of the inputs leaves open."""
+    if answer.swell:
+        return answer.swell
     if answer.leaves_open:
         return (
             f"No cause shows. The re-tuned model leaves {_of_noise(answer.leftover.left_open)} of the sensors, "

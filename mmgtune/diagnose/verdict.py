@@ -177,6 +177,7 @@ class Answer(Plotted):
     moved: tuple[Retuned, ...] = ()
     instead: Instead | None = None
     contradicted: str = ""
+    swell: str = ""
     jumped: tuple[str, ...] = ()
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
@@ -189,6 +190,8 @@ class Answer(Plotted):
         """One of ``VERDICTS``."""
         if self.interrupted:
             return "interrupted"
+        if self.swell:
+            return "none"
         bends = any(cause.runs for cause in self.causes)  # where it was found that explains much of anything
         fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends or self._misses_each)
         fails = fails or bool(self.unclear)
