@@ -25,6 +25,7 @@ from .leftover import Leftover
 from .linear import typical
 from .of_hull import AS_WELL, explained_by_hull
 from .refit import WORTH
+from .retuned import retuned, unlike_any
 from .search import Found, step_of, without
 from .unseen import Beside, Unseen
 from .workbench import Point, Workbench
@@ -90,6 +91,7 @@ class Contribution:
     beside_runs  whether another cause has such values
     slight   whether it is the only cause, of a size that is not worth reporting, and unnoticed when left out
     moves    share of its size by which another cause would be off, and told wrong, without it
+    sane     whether without it mass or inertia would have to be what no ship's are, which with it they are not
     of_hull  share of what it explains that a hull further off than believed would explain; see ``explained_by_hull``
 
     Where ``seen`` alone shows that it is no trace, the other fields are not worked out: NaN and empty.
@@ -106,6 +108,7 @@ class Contribution:
     beside_runs: bool = False
     slight: bool = False
     moves: float = 0.0
+    sane: bool = False
     of_hull: float = 0.0
 
     @property
@@ -140,7 +143,7 @@ class Contribution:
             return self.slight
         if self.harmful:
             return True
-        if self.moves >= MOVES:
+        if self._needed:
             return False
         little = self._shown < self.form or (self.share < FORM and self.seen < HARDLY_SEEN)
         if little and not (self.stands_out or self.whole):
@@ -149,6 +152,11 @@ class Contribution:
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
         )
         return self.seen < SMALL and self.share < SHARE and max(self.channels.values()) < OF_NOISE and moved
+
+    @property
+    def _needed(self) -> bool:
+        """Whether another cause, or mass and inertia, would be told wrong without it."""
+        return self.moves >= MOVES or self.sane
 
     @property
     def _shown(self) -> float:
@@ -162,7 +170,8 @@ class Contribution:
     def little(self) -> bool:
         """Whether it is so small that it is named only if it can be told from all other causes."""
         asked = self.channels is not None
-        return asked and max(self.seen, self.share) < DOUBTFUL and not (self.stands_out or self.whole)
+        little = asked and max(self.seen, self.share) < DOUBTFUL
+        return little and not (self.stands_out or self.whole or self._needed)
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -255,18 +264,20 @@ def _weighed(
     bench: Workbench, found: Found, fewer: Sequence[Point], brought: Sequence[Contribution]
 ) -> list[Contribution]:
     """Contributions with what a hull further off would explain of each cause, and what others would be without those
-    that seem unnoticed."""
+    that seem unnoticed, or little."""
     points = fewer or [found.base] * len(found.causes)
     weighed = [
         replace(one, of_hull=explained_by_hull(bench, cause, point, found.final.chi2))
         for one, cause, point in zip(brought, found.causes, points, strict=True)
     ]
-    asked = [k for k, one in enumerate(weighed) if fewer and one.unnoticed and not (one.harmful or one.like_hull)]
+    seems = [(one.unnoticed or one.little) and not (one.harmful or one.like_hull) for one in weighed]
+    asked = [k for k, little in enumerate(seems) if fewer and little]
     if not asked:
         return weighed
-    sizes = estimates(bench, found.final)
+    sizes, sane = estimates(bench, found.final), not unlike_any(retuned(bench, found.final))
     for k in asked:
-        weighed[k] = replace(weighed[k], moves=_moved(bench, found, found.causes[k], fewer[k], sizes))
+        moves = _moved(bench, found, found.causes[k], fewer[k], sizes)
+        weighed[k] = replace(weighed[k], moves=moves, sane=sane and bool(unlike_any(retuned(bench, fewer[k]))))
     return weighed
 
 

@@ -98,8 +98,19 @@ def test_what_would_let_another_cause_err_is_noticed():
     assert trace.unnoticed
     assert not replace(trace, moves=0.15).unnoticed
     assert replace(trace, moves=0.05).unnoticed
+    assert trace.little
+    assert not replace(trace, moves=0.15).little
     assert replace(trace, moves=0.15, share=-0.01).unnoticed
     assert replace(trace, moves=0.15, of_hull=0.95).unnoticed
+
+
+def test_what_mass_and_inertia_need_to_be_a_ships_is_noticed():
+    """A propeller that lost a tenth of its thrust was a trace beside a rudder's zero: added mass grew by a half."""
+    trace = Contribution(0.0009, 0.0004, {"psi": 1.3}, {"advance_m": 0.02})
+    assert trace.unnoticed
+    assert trace.little
+    assert not replace(trace, sane=True).unnoticed
+    assert not replace(trace, sane=True).little
 
 
 @pytest.mark.parametrize(
