@@ -91,7 +91,7 @@ class Contribution:
     beside_runs  whether another cause has such values
     slight   whether it is the only cause, of a size that is not worth reporting, and unnoticed when left out
     moves    share of its size by which another cause would be off, and told wrong, without it
-    sane     whether without it mass or inertia would have to be what no ship's are, which with it they are not
+    keeps_inertia whether without it mass or inertia would have to be what no ship's are, which with it they are not
     of_hull  share of what it explains that a hull further off than believed would explain; see ``explained_by_hull``
 
     Where ``seen`` alone shows that it is no trace, the other fields are not worked out: NaN and empty.
@@ -108,7 +108,7 @@ class Contribution:
     beside_runs: bool = False
     slight: bool = False
     moves: float = 0.0
-    sane: bool = False
+    keeps_inertia: bool = False
     of_hull: float = 0.0
 
     @property
@@ -156,7 +156,7 @@ class Contribution:
     @property
     def _needed(self) -> bool:
         """Whether another cause, or mass and inertia, would be told wrong without it."""
-        return self.moves >= MOVES or self.sane
+        return self.moves >= MOVES or self.keeps_inertia
 
     @property
     def _shown(self) -> float:
@@ -274,10 +274,11 @@ def _weighed(
     asked = [k for k, little in enumerate(seems) if fewer and little]
     if not asked:
         return weighed
-    sizes, sane = estimates(bench, found.final), not unlike_any(retuned(bench, found.final))
+    sizes, plausible = estimates(bench, found.final), not unlike_any(retuned(bench, found.final))
     for k in asked:
         moves = _moved(bench, found, found.causes[k], fewer[k], sizes)
-        weighed[k] = replace(weighed[k], moves=moves, sane=sane and bool(unlike_any(retuned(bench, fewer[k]))))
+        keeps = plausible and bool(unlike_any(retuned(bench, fewer[k])))
+        weighed[k] = replace(weighed[k], moves=moves, keeps_inertia=keeps)
     return weighed
 
 
@@ -288,7 +289,7 @@ def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, size
     fewer  the best fit without it
     """
     values = bench.values(fewer)
-    there, gone = ({n: z for n, z in zip(p.names, p.unit, strict=True)} for p in (found.final, fewer))
+    there, gone = (dict(zip(point.names, point.unit, strict=True)) for point in (found.final, fewer))
     largest = 0.0
     for other in found.causes:
         wrong = any(_is_beyond(sizes[name], values[name]) for name in other.names if name in values)

@@ -106,7 +106,7 @@ class Judge:
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]
     ) -> tuple[Diagnosis, Found]:
         """The answer without small causes that cannot be told from others, the smallest first, as long as it holds
-        without them; of three it may only do so then."""
+        without them; a small third may be all that keeps two from being believed."""
         while result.groups and len(found.causes) > 1 and not self.hooks.stop():
             groups = {tag: others for tag, *others in result.groups}
             doubtful = [

@@ -166,10 +166,8 @@ def _looked_at(
     if not swinging:
         return result
     if not result.causes and not unseen.test and beside_swell(bench, found.final, period) < NOTICED:
-        beside = (
-            f"Averaged over {SWELLS:g} such periods, what the re-tuned model leaves is noise: nothing else is wrong."
-        )
-        return replace(result, swell=f"{swinging}. {beside}", whereabouts=None)
+        averaged = f"Averaged over {SWELLS:g} such periods, what the re-tuned model leaves is noise"
+        return replace(result, swell=f"{swinging}. {averaged}: nothing else is wrong.", whereabouts=None)
     return replace(result, contradicted=f"{swinging}: that may be all that is left.")
 
 
