@@ -53,13 +53,16 @@ def said(answer: Answer) -> Said:
     if answer.verdict == "found" and not answer.causes:
         return Said(" ".join(["No cause that is the same in all voyages shows.", *told]))
     more = [*told, *([answer.together.sentence] if answer.together else [])]
-    if answer.verdict != "unexplained":
-        apart = f"{capital(listed(answer.jumped, 3))}. Apart from that: " if answer.jumped else ""
-        return Said(" ".join([apart + _of_causes(answer), *more]))
-    unknown = _of_the_unknown(answer)
-    pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
-    first, *why = [*pieces, unknown.why]
-    return Said(first, " ".join(filter(None, why)), unknown.leading, " ".join(more))
+    if answer.verdict == "unexplained":
+        unknown = _of_the_unknown(answer)
+        pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
+        first, *why = [*pieces, unknown.why]
+        return Said(first, " ".join(filter(None, why)), unknown.leading, " ".join(more))
+    apart = f"{capital(listed(answer.jumped, 3))}. Apart from that: " if answer.jumped else ""
+    if answer.verdict == "none":
+        first, *why = _of_none(answer)
+        return Said(apart + first, " ".join(filter(None, why)), beside=" ".join(more))
+    return Said(" ".join([apart + _of_causes(answer), *more]))
 
 
 def _where(answer: Answer) -> str:
@@ -77,8 +80,6 @@ def _of_causes(answer: Answer) -> str:
             else "No cause was found by then."
         )
         return f"The search was stopped before its end, so nothing can be concluded. {told}"
-    if answer.verdict == "none":
-        return _of_none(answer)
     named = _of_the_named(answer)
     if all(cause.effect is None for cause in answer.causes):
         before, after = answer.chi2
@@ -99,16 +100,17 @@ def _of_causes(answer: Answer) -> str:
     )
 
 
-def _of_none(answer: Answer) -> str:
-    """That no cause shows, what re-tuning changed, and what the log of the inputs leaves open."""
+def _of_none(answer: Answer) -> list[str]:
+    """That no cause shows, first; what re-tuning changed, and what the log of the inputs leaves open."""
     if answer.swell:
-        return answer.swell
+        return [answer.swell]
     if answer.leaves_open:
-        return (
-            f"No cause shows. The re-tuned model leaves {_of_noise(answer.leftover.left_open)} of the sensors, "
+        left_open = (
+            f"The re-tuned model leaves {_of_noise(answer.leftover.left_open)} of the sensors, "
             "no more than what revolutions and rudder angle did between two samples of their log leaves "
             "open: inputs logged more often would tell more."
         )
+        return ["No cause shows.", left_open]
     alone = ", ".join(dict.fromkeys(one.cause.tag for one in answer.traces if one.contribution.harmful))
     like_hull = listed([one.cause.tag for one in answer.traces if one.contribution.like_hull])
     none = f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
@@ -122,15 +124,14 @@ def _of_none(answer: Answer) -> str:
         )
     if far := moved_in_words(answer.moved):
         said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-        return " ".join(filter(None, (said, besides(answer.moved), weighed(answer.moved), few)))
-    parts = (
+        return [said, besides(answer.moved), weighed(answer.moved), few]
+    return [
         f"Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and {none}.",
         far_off(answer.moved),
         weighed(answer.moved),
         answer.instead.sentence if answer.instead else "",
         few,
-    )
-    return " ".join(filter(None, parts))
+    ]
 
 
 def _times(ratio: float) -> str:

@@ -218,7 +218,8 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
             f"{count(looked, 'effect was', 'effects were')} looked at; what these trials would have shown stands below."
         )
         nothing = Nothing("No cause was found.", more if looked else "")
-        return Section("causes", "Causes", (nothing, *said, *unexplained.traces(data)))
+        why = [Prose((clean(data["explained"]),))] if data.get("explained") else []
+        return Section("causes", "Causes", (*why, nothing, *said, *unexplained.traces(data)))
     blocks: list[Block] = [*said]
     if not listed:
         blocks += unexplained.traces(data)

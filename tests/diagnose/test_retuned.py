@@ -137,6 +137,10 @@ def test_the_inertia_of_another_loading_is_told(tmp_path):
     assert inertia.name == "particulars.k_zz_"
     assert abs(inertia.change - 0.25) < 0.1  # what is believed of her hull keeps it nearer to the profile's
     assert "The trials ask for radius of gyration" in result.sentence()
+    said = result.to_dict()
+    assert said["verdict"] == "none"
+    assert said["headline"].endswith("no cause that was looked for shows.")  # a head is short
+    assert "The trials ask for radius of gyration" in said["explained"]
     assert not inertia.to_dict()["target"]
 
 
