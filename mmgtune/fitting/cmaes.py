@@ -82,9 +82,11 @@ class Search:
     finished: bool = False
 
 
-def _asked(problem: FitProblem, seed: int, start: FloatArray, **named: Any) -> list[Any]:
+def _asked(
+    problem: FitProblem, seed: int, start: FloatArray, populations: tuple[int, ...], tolerance: float | None, **_: Any
+) -> list[Any]:
     """Numbers and texts that identify a search in a journal."""
-    return ["search", *problem.asked(), seed, start, named.get("tolerance"), named.get("populations")]
+    return ["search", *problem.asked(), seed, start, tolerance, populations]
 
 
 def _noted(found: Search) -> dict[str, Any]:
@@ -108,7 +110,7 @@ def _recalled(noted: dict[str, Any]) -> Search:
     )
 
 
-@remembered(_asked, _noted, _recalled, lambda problem, *_given, **_named: problem.counter)
+@remembered(_asked, _noted, _recalled, lambda problem, **_: problem.counter)
 def search(
     problem: FitProblem,
     seed: int,

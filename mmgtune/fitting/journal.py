@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
+import inspect
 import json
 import os
 from collections.abc import Callable, Iterator
@@ -193,9 +194,9 @@ class Uncounted:
 class remembered(Generic[R]):
     """Decorator of a function whose results a journal keeps.
 
-    asked         of its arguments: numbers and texts that say what is to be done
+    asked         of its arguments, by name and with the defaults: numbers and texts that say what is to be done
     note, recall  a result as JSON, and back
-    counter       of its arguments: what counts evaluations; those of a recalled result count as when they were made
+    counter       of the same: what counts evaluations; those of a recalled result count as when they were made
     """
 
     def __init__(
@@ -215,8 +216,9 @@ class remembered(Generic[R]):
             journal = _ACTIVE.get()
             if journal is None:
                 return do(*given, **named)
-            asked = _hash(self.asked(*given, **named))
-            counter = self.counter(*given, **named) if self.counter else Uncounted()
+            known = arguments(do, *given, **named)
+            asked = _hash(self.asked(**known))
+            counter = self.counter(**known) if self.counter else Uncounted()
             before = counter.evaluations
 
             def note(result: R) -> Any:
@@ -237,6 +239,13 @@ class remembered(Generic[R]):
             return result
 
         return through
+
+
+def arguments(do: Callable[..., Any], *given: Any, **named: Any) -> dict[str, Any]:
+    """Arguments of a call by name, those that were not given as the function has them."""
+    bound = inspect.signature(do).bind(*given, **named)
+    bound.apply_defaults()
+    return bound.arguments
 
 
 def _hash(parts: list[Any]) -> str:

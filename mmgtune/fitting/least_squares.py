@@ -76,22 +76,18 @@ class LeastSquaresResult(Brief):
 def _asked(
     problem: FitProblem,
     starts: FloatArray,
-    max_iterations: int = MOST_ITERATIONS,
-    ridge: float = 0.0,
-    anchor: FloatArray | None = None,
-    stop: Callable[[], bool] | None = None,
-    whiten: Callable[[FloatArray], FloatArray] | None = None,
-    tolerance: float = 0.0,
-    beliefs: tuple[FloatArray, FloatArray] | None = None,
-    trusting: bool = False,
-    hopeless: float = math.inf,
+    stop: Callable[[], bool],
+    whiten: Callable[[FloatArray], FloatArray] | None,
+    beliefs: tuple[FloatArray, FloatArray] | None,
+    **numbers: Any,
 ) -> list[Any]:
     """Numbers and texts that identify a solve in a journal: its arguments, but for what stops it.
 
     Of a whitening it is said that there is one: which follows from what the run has done before.
     """
-    numbers = [max_iterations, ridge, tolerance, trusting, hopeless, "whitened" if whiten else ""]
-    return ["solve", *problem.asked(), starts, anchor, *numbers, *(beliefs or ())]
+    anchor = numbers.pop("anchor")
+    how = [*sorted(numbers.items()), "whitened" if whiten else ""]
+    return ["solve", *problem.asked(), starts, anchor, *how, *(beliefs or ())]
 
 
 def _noted(ends: list[LeastSquaresResult]) -> list[Any]:
@@ -108,7 +104,7 @@ def _recalled(noted: list[Any]) -> list[LeastSquaresResult]:
     ]
 
 
-@remembered(_asked, _noted, _recalled, lambda problem, *_given, **_named: problem.counter)
+@remembered(_asked, _noted, _recalled, lambda problem, **_: problem.counter)
 def solve(
     problem: FitProblem,
     starts: FloatArray,
