@@ -9,6 +9,8 @@ import pytest
 
 from mmgtune.backends import pad
 from mmgtune.fitting.box import choose_targets
+from mmgtune.fitting.journal import _hash, arguments
+from mmgtune.fitting.least_squares import _asked, solve
 from mmgtune.model import Model
 from mmgtune.trial import Trial, TrialSet
 from tests.runs import states
@@ -86,3 +88,8 @@ def noisy(suzaku: Model) -> TrialSet:
 def targets(suzaku: Model) -> tuple[str, ...]:
     """The paper's twelve."""
     return choose_targets(suzaku, ())
+
+
+def solve_asked(problem, starts, **how):
+    """The hash by which a journal tells a solve from another."""
+    return _hash(_asked(**arguments(solve, problem, starts, **how)))

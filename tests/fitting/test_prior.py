@@ -10,12 +10,12 @@ from mmgtune.components import split_name
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, LeaveOutOptions, SweepOptions, fit, leave_out, make_problem, sweep
 from mmgtune.fitting.cmaes import search
-from mmgtune.fitting.least_squares import _asked, solve
+from mmgtune.fitting.least_squares import solve
 from mmgtune.fitting.weighing import n_independent, weigh
 from mmgtune.profile import parse_profile
 from mmgtune.trial import TrialSet
 from tests.command import run
-from tests.fitting.conftest import TRUTH, make_set, make_trial
+from tests.fitting.conftest import TRUTH, make_set, make_trial, solve_asked
 
 LEAST = "least-squares"
 QUICK = FitOptions(method=LEAST, starts=2)
@@ -194,9 +194,9 @@ def test_a_tuned_profile_is_held_by_its_formulas_still(formulas, noisy):
 def test_a_solve_is_told_from_another_by_its_prior(formulas, noisy):
     problem = make_problem(formulas, noisy, QUICK)
     start = problem.box.to_unit(problem.box.pre)[:, None]
-    asked = [repr(_asked(one, start)) for one in (problem, problem.with_weight(2.0))]
-    asked.append(repr(_asked(make_problem(formulas, noisy, replace(QUICK, prior=False)), start)))
-    asked.append(repr(_asked(make_problem(scattered(formulas, 0.1, ["hull.R_0"]), noisy, QUICK), start)))
+    asked = [solve_asked(one, start) for one in (problem, problem.with_weight(2.0))]
+    asked.append(solve_asked(make_problem(formulas, noisy, replace(QUICK, prior=False)), start))
+    asked.append(solve_asked(make_problem(scattered(formulas, 0.1, ["hull.R_0"]), noisy, QUICK), start))
     assert len(set(asked)) == 4
 
 

@@ -13,12 +13,12 @@ from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep, write_left_out
 from mmgtune.fitting import folder as run_folder
 from mmgtune.fitting.checkpoint import Checkpoint
-from mmgtune.fitting.journal import NAME, _hash, arguments
-from mmgtune.fitting.least_squares import _asked, solve
+from mmgtune.fitting.journal import NAME
 from mmgtune.fitting.setting import make_setting
 from mmgtune.trial import load_trials, write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run, run_until
+from tests.fitting.conftest import solve_asked
 
 CLOCK = {"created", "wall_s", "command", "out"}
 FEW = ("hull.R_0", "wake.w_P0", "rudder.kappa")
@@ -113,15 +113,11 @@ def test_the_journal_tells_problems_apart(suzaku):
         problem.with_offsets(np.full((2, 6), 0.1)),
     ]
     starts = np.full((3, 1), 0.5)
-
-    def of(one, **how):
-        return _hash(_asked(**arguments(solve, one, starts, **how)))
-
-    asked = {of(one, ridge=0.0) for one in problems}
-    asked |= {of(problem, ridge=0.1), of(problem, whiten=abs, ridge=0.0)}
+    asked = {solve_asked(one, starts, ridge=0.0) for one in problems}
+    asked |= {solve_asked(problem, starts, ridge=0.1), solve_asked(problem, starts, whiten=abs, ridge=0.0)}
     assert len(asked) == len(problems) + 2
-    assert of(setting.problem(("turn_p35", "turn_m35")), ridge=0.0) in asked
-    assert of(problem) in asked  # a default that is not given is the same
+    assert solve_asked(setting.problem(("turn_p35", "turn_m35")), starts, ridge=0.0) in asked
+    assert solve_asked(problem, starts) in asked  # a default that is not given is the same
 
 
 def test_half_a_line_at_the_end_is_done_again(tmp_path, in_three):

@@ -8,7 +8,6 @@ import pytest
 
 from mmgtune.errors import OptionError, TrialError
 from mmgtune.fitting import FitOptions, LeaveOutOptions, fit, leave_out, make_problem
-from mmgtune.fitting.least_squares import _asked
 from mmgtune.fitting.weighing import weigh
 from mmgtune.model import Model
 from mmgtune.motions import as_trial
@@ -19,6 +18,7 @@ from mmgtune.trial import TrialSet, load_trials, write_trial
 from mmgtune.trial.index_trial import IndexTrial, Stated
 from mmgtune.units import DEG
 from tests.command import run
+from tests.fitting.conftest import solve_asked
 from tests.fitting.test_prior import scattered
 
 QUICK = FitOptions(method="least-squares", starts=1)
@@ -139,7 +139,7 @@ def test_both_kinds_of_trials_in_one_fit(truth, off):
     rows = weighed.residuals(start[:, None])[0]
     assert len(rows) == problem.n_residuals + 3 + 2
     assert rows @ rows == pytest.approx(weighed.costs(start[:, None])[0])
-    assert repr(_asked(problem, start[:, None])) != repr(_asked(problem.with_weight(0.5), start[:, None]))
+    assert solve_asked(problem, start[:, None]) != solve_asked(problem.with_weight(0.5), start[:, None])
 
 
 def test_residuals_are_in_tolerances_and_finite(truth):
