@@ -3,8 +3,8 @@
 python tools/write_answers.py [docs/hidden.jsonl]
 
 An answer that names causes is right where it names, or holds in a group, everything hidden and nothing else.  That
-nothing was found is right where nothing was hidden that is larger than the limit stated; ``unexplained`` where what was
-hidden is in no registry.
+nothing was found is right where nothing was hidden that is larger than the limit stated, and nothing that is in no
+registry; ``unexplained`` where what was hidden is in no registry.
 """
 
 from __future__ import annotations
@@ -24,10 +24,12 @@ UNKNOWN = "unknown"
 
 def right(row: dict[str, Any]) -> bool:
     """Whether the answer of a case of the study is."""
-    if row["verdict"] == "none":
-        return row["outcome"] == "clear" or (row["outcome"] == "missed" and not row["above_limit"])
+    unknown = any(tag.startswith(UNKNOWN) for tag in row["hidden"])
+    if row["verdict"] == "none":  # a jump of positions is told beside that nothing else was found
+        small = row["outcome"] == "missed" and not row["above_limit"] and not unknown
+        return row["outcome"] in ("clear", "right") or small
     if row["verdict"] == "unexplained":
-        return any(tag.startswith(UNKNOWN) for tag in row["hidden"])
+        return unknown
     return row["outcome"] in ("right", "grouped")
 
 

@@ -42,7 +42,7 @@ from .cases import (
     unknown,
 )
 from .plant import AUTOCORRELATED, simulate, write
-from .unknown import UNKNOWN
+from .unknown import JUMP, UNKNOWN
 
 SEEDS = 4
 NULLS, COLOURED_NULLS, PAIRS, TRIPLES = 80, 20, 48, 20
@@ -118,6 +118,7 @@ def kept(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> dict[str,
         "contributions": [
             (one["effect"], one["share_of_fall"], one["share_held_out"]) for one in said["contributions"]
         ],
+        "jumped": bool(said["jumped"]),
         "unclear": said["unexplained"]["unclear"],
         "best": [
             {"effect": row["effect"], "parameters": row["parameters"], "gain": round(row["gain"], 1)}
@@ -165,6 +166,7 @@ def outcome(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> str:
         return "clear" if said["verdict"] == "none" else "alarm"
     if any(tag.startswith("unknown") for tag in hidden):
         since = {UNKNOWN[tag].since for tag in hidden}
+        named |= {JUMP} if said["jumped"] else set()
         fine = said["verdict"] == "unexplained" or (named and (named <= {"hull-term"} or named == since))
         return "right" if fine else "missed" if said["verdict"] == "none" else "wrong"
     if said["verdict"] == "unexplained":

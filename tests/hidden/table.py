@@ -19,7 +19,7 @@ from mmgtune.files import write_text
 
 from .cases import LADDER
 from .study import N_CASES, SEEDS
-from .unknown import UNKNOWN
+from .unknown import JUMP, UNKNOWN
 
 COLOURS = {"right": "#1b7837", "grouped": "#a6dba0", "missed": "#d9d9d9", "unexplained": "#92c5de", "wrong": "#b2182b"}
 """Outcomes of a single hidden effect."""
@@ -241,7 +241,7 @@ def _unknown(rows: Sequence[Row]) -> list[str]:
     for row in rows:
         (tag,) = row["hidden"]
         magnitude = f"{row['hidden'][tag]['magnitude']:.3g} {UNKNOWN[tag].unit}"
-        named = ", ".join(cause["effect"] for cause in row["causes"]) or "-"
+        named = ", ".join([cause["effect"] for cause in row["causes"]] + [JUMP] * row.get("jumped", False)) or "-"
         parts.append(
             f"| {tag.removeprefix('unknown-')} | {magnitude} | {row['outcome']} | {row['verdict']} | {named} |\n"
         )

@@ -9,12 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+JUMP = "jump"
+"""What a diagnosis says of positions that jump, beside its causes."""
+
 
 @dataclass(frozen=True)
 class Unknown:
     """One such effect: how it acts, the magnitude's unit, and magnitudes that are clearly visible but plausible.
 
-    since  the cause that has come to be known for it, "" for none
+    since  the cause that has come to be known for it, "" for none; JUMP where it is told without a cause
     """
 
     acts: str
@@ -61,7 +64,7 @@ UNKNOWN: dict[str, Unknown] = {
     ),
     "unknown-easting-scale": Unknown("y logged times 1 + magnitude", "-", (-0.04, 0.03, 0.05)),
     "unknown-position-step": Unknown(
-        "positions logged + magnitude to the north-east from 150 s on", "m", (5.0, 8.0, 12.0)
+        "positions logged + magnitude to the north-east from 150 s on", "m", (5.0, 8.0, 12.0), JUMP
     ),
     "unknown-sway-bias": Unknown("v logged + magnitude", "m/s", (-0.12, 0.08, 0.15), "log-zero"),
     "unknown-clock-drift": Unknown("control log late by magnitude t / 600 s", "s", (-8.0, 6.0, 10.0)),
