@@ -328,7 +328,7 @@ def with_only(bench: Workbench, found: Found, causes: Sequence[Hypothesis]) -> F
 def _alone(found: Found, unseen: Unseen) -> Contribution:
     """Contribution of the only cause, where the model without it leaves nothing but noise: a trace if it does harm."""
     gain = measured(found, unseen)
-    return Contribution(1.0, gain.share_removed[0], {}, {}) if gain.worse else Contribution(1.0)
+    return Contribution(1.0, gain.share_removed, {}, {}) if gain.worse else Contribution(1.0)
 
 
 @dataclass(eq=False)

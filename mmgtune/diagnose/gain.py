@@ -92,7 +92,7 @@ class Gain(Brief):
     def remains(self) -> bool:
         """Whether the causes leave more than noise on held-out trials, remove less than ``MOST`` of the error there,
         and do not predict most runs to within noise."""
-        left = self.leaves_beside(BAND * self.unsure) and self.share_removed[0] < MOST
+        left = self.leaves_beside(BAND * self.unsure) and self.share_removed < MOST
         return left and not self.tells_most_runs
 
     def leaves_beside(self, excused: float = 0.0) -> bool:
@@ -158,7 +158,7 @@ class Gain(Brief):
     @property
     def mostly_remains(self) -> bool:
         """Whether the causes leave more than half of the error on test trials, and more than was to be expected."""
-        return self.held_out == "test" and self.remains and self.share_removed[0] < 0.5
+        return self.held_out == "test" and self.remains and self.share_removed < 0.5
 
     @property
     def J(self) -> tuple[float | None, float | None]:
@@ -167,18 +167,26 @@ class Gain(Brief):
         after = sum(one.J["after"] for one in self.compared)
         return finite(before), finite(after)
 
+    @property
+    def share_removed(self) -> float:
+        """Share of the error above noise that the causes remove."""
+        return _share(self.excess)
+
     @cached_property
-    def share_removed(self) -> tuple[float, float, float]:
-        """Share of the error above noise that the causes remove, with a 95 % interval over trials."""
+    def interval(self) -> tuple[float, float] | None:
+        """95 % interval of ``share_removed`` over trials; None for a single one, as nothing tells how much they
+        differ."""
+        if len(self.excess) < 2:
+            return None
         rng = np.random.default_rng(0)
         picks = rng.integers(len(self.excess), size=(RESAMPLES, len(self.excess)))
         low, high = np.quantile([_share(self.excess[pick]) for pick in picks], [0.025, 0.975])
-        return _share(self.excess), float(low), float(high)
+        return float(low), float(high)
 
     @property
-    def interval(self) -> tuple[float, float] | None:
-        """Interval of ``share_removed``; None for a single trial, as nothing tells how much trials differ."""
-        return self.share_removed[1:] if len(self.excess) > 1 else None
+    def surely_removed(self) -> float:
+        """The lower end of that interval; of a single trial the share itself."""
+        return self.interval[0] if self.interval else self.share_removed
 
     def measures(self, which: str) -> dict[str, float]:
         """Means over trials of the seven distance measures, "before" or "after"."""
@@ -225,7 +233,7 @@ class Gain(Brief):
             "trials": [one.trial.id for one in self.compared],
             "J_test_before": self.J[0],
             "J_test_after": self.J[1],
-            "share_above_noise_removed": self.share_removed[0],
+            "share_above_noise_removed": self.share_removed,
             "share_ci95": list(self.interval) if self.interval else None,
             "measures_before": {name: finite(value) for name, value in self.measures("before").items()},
             "measures_after": {name: finite(value) for name, value in self.measures("after").items()},

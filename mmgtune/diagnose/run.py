@@ -103,8 +103,8 @@ def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:
     effects = tuple(cause.tag for cause in alone.causes)
     together = Together.of(alone.gain, effects, believed=alone.names_causes, settled=True)
     settled = replace(of_all, together=together)
-    better = settled.names_causes and of_all.gain.share_removed[0] > alone.gain.share_removed[0]
-    if better or not alone.names_causes or alone.gain.share_removed[0] < TOLD:
+    better = settled.names_causes and of_all.gain.share_removed > alone.gain.share_removed
+    if better or not alone.names_causes or alone.gain.share_removed < TOLD:
         return settled
     return replace(alone, together=replace(together, settled=False))
 

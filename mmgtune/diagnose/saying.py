@@ -154,7 +154,7 @@ def _of_the_unknown(answer: Answer) -> Said:
         return Said(_CANNOT_NAME, best, answer.leading.sentence if answer.leading else "")
     if answer.tells_a_part and not answer.leftover.noticed:
         them = "it was" if len(answer.causes) == 1 else "they were"
-        share = answer.gain.share_removed[0]
+        share = answer.gain.share_removed
         held_out = f"leaves {in_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
         best = (
             f"The best of what is known, {tags}, would remove {_explained(answer)} of the error {them} found on, but "
@@ -205,7 +205,7 @@ def _explained(answer: Answer) -> str:
 
 def _gained(answer: Answer, them: str, where: str) -> str:
     """What adding the causes removes of the error on held-out trials, in a sentence."""
-    share, low, _ = answer.gain.share_removed
+    share = answer.gain.share_removed
     told, runs = answer.gain.runs_told
     if answer.gain.tells_most_runs and share < MOST:
         rest = "the other" if runs == told + 1 else "the others"
@@ -220,7 +220,7 @@ def _gained(answer: Answer, them: str, where: str) -> str:
         )
     imitated = share < IMITATED and answer.options.leeway > 0.0 and answer.choice is None
     hull = f", counted from a model whose hull may be {100.0 * answer.options.leeway:.3g} % off" if imitated else ""
-    few = ", and runs are too few to be sure of that" if low < TOLD <= share else ""
+    few = ", and runs are too few to be sure of that" if answer.gain.surely_removed < TOLD <= share else ""
     return f"Adding {them} removes {in_percent(share)} of the error {where}{hull}{few}."
 
 

@@ -126,7 +126,7 @@ class Leading:
     def of(cls, whole: Answer, first: Answer) -> Leading | None:
         """From the answer with all causes, which has the size of the first, and the answer with the first alone, which
         has its gain; None where the gain is small or the size is not determined."""
-        explained, held_out = first.explained_share, first.gain.share_removed[0]
+        explained, held_out = first.explained_share, first.gain.share_removed
         if not first.causes or min(explained, held_out) < LEADS:
             return None
         cause = next(one for one in whole.causes if one.tag == first.causes[0].tag)
@@ -239,7 +239,7 @@ class Answer(Plotted):
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
         if len(brought) < 2:
-            return not_told if self.gain.share_removed[0] < TOLD else ""
+            return not_told if self.gain.share_removed < TOLD else ""
         if self.more or len(brought) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
         if self._faint:
@@ -252,10 +252,9 @@ class Answer(Plotted):
         several = sum(bool(cause.runs) for cause in self.causes) > 1
         if several and (len(brought) > 2 or not self.explains_all):
             return "more than one of them differs from run to run"
-        share, low, _ = self.gain.share_removed
-        if share < TOLD:
+        if self.gain.share_removed < TOLD:
             return "it removes little of the error where nothing was fitted"
-        if low < AT_ALL and any(cause.runs for cause in self.causes):
+        if self.gain.surely_removed < AT_ALL and any(cause.runs for cause in self.causes):
             return "what it removes of the error where nothing was fitted may be next to nothing"
         if not_told:
             return not_told
@@ -280,7 +279,7 @@ class Answer(Plotted):
         """
         settled = self.together is not None and self.together.settled
         bends = any(cause.runs for cause in self.causes) and self.gain.leaves_beside()
-        share = self.gain.share_removed[0]
+        share = self.gain.share_removed
         untold = settled and share < TOLD and not self.gain.tells_most_runs
         return bool(self.causes) and (untold or (bends and share < AT_ALL))
 
@@ -337,7 +336,7 @@ class Answer(Plotted):
         A single cause that leaves nothing but noise of all runs together is not refuted by it, unless the logged inputs
         leave much open: few runs leave some coefficients open, and no cause that stood for another was seen to do that.
         """
-        if self.gain.held_out != "each" or self.gain.share_removed[0] < AT_ALL:
+        if self.gain.held_out != "each" or self.gain.share_removed < AT_ALL:
             return False
         alone = len(self.contributions) == 1 and not self.leaves_open
         if alone and self.explained_share >= ALL and not self.leftover.noticed:
@@ -353,12 +352,12 @@ class Answer(Plotted):
     def explains_all(self) -> bool:
         """Whether the causes leave so little of the error beyond noise, on held-out trials too, that a cause whose form
         is a little off would leave as much."""
-        return self.explained_share >= ALL and self.gain.share_removed[0] >= ALL_HELD_OUT
+        return self.explained_share >= ALL and self.gain.share_removed >= ALL_HELD_OUT
 
     @property
     def explains_nearly_all(self) -> bool:
         """Whether the causes remove nearly all of the error beyond noise, on held-out trials too."""
-        return self.explained_share >= MOSTLY and self.gain.share_removed[0] >= MOST
+        return self.explained_share >= MOSTLY and self.gain.share_removed >= MOST
 
     @property
     def _mostly_left(self) -> bool:

@@ -68,7 +68,7 @@ def test_another_current_in_each_run(currents):
 def test_runs_held_out_are_judged_on_what_follows_their_first_part(currents):
     _, result = currents
     assert result.gain.first_part == 0.4
-    assert result.gain.share_removed[0] > 0.99
+    assert result.gain.share_removed > 0.99
     document = result.to_dict()
     assert document["gain"]["of_single_runs"]["estimated_on_first_share_of_run"] == 0.4
     assert "first 40 % of each run" in document["sentence"]

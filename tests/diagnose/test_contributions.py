@@ -416,7 +416,7 @@ def sum_of(
         leftover=SimpleNamespace(structured=structured, unknown=left or 0.2 * structured),
         chi2=(before, 1.0),
         explains_all=explains_all,
-        gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, low, 1.0)),
+        gain=SimpleNamespace(mostly_remains=remains, share_removed=removed, surely_removed=low),
         _told_by_none=False,
         _excused_by_gusts=excused,
         _bent=bent,
@@ -510,7 +510,7 @@ def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_
 ):
     """An antenna 110 m aft, beside a form of the hull that nobody knows, was named without its size."""
     cause = SimpleNamespace(sized=sized, at_ends=False, tag="antenna", sentence="The antenna stood 110 m aft")
-    gain = SimpleNamespace(share_removed=(held_out, 0.0, 1.0))
+    gain = SimpleNamespace(share_removed=held_out, surely_removed=0.0)
     another = SimpleNamespace(sized=True, at_ends=False, tag="hull-term")
     first = SimpleNamespace(causes=(SimpleNamespace(tag="antenna"),), explained_share=explained, gain=gain)
     leading = Leading.of(SimpleNamespace(causes=(another, cause)), first)
@@ -654,7 +654,7 @@ def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
 )
 def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left, open_, explained, misses):
     seen = SimpleNamespace(
-        gain=SimpleNamespace(held_out=held_out, left=left, share_removed=(share, 0.0, 1.0)),
+        gain=SimpleNamespace(held_out=held_out, left=left, share_removed=share, surely_removed=0.0),
         leftover=SimpleNamespace(left_open=open_, noticed=False),
         leaves_open=open_ > 0.3,
         explained_share=explained,
@@ -667,7 +667,7 @@ def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left
     ("explained", "held_out", "all_of_it"), [(0.999, 0.985, True), (0.997, 0.99, False), (0.999, 0.97, False)]
 )
 def test_what_a_cause_of_slightly_another_form_would_leave_is_all(explained, held_out, all_of_it):
-    seen = SimpleNamespace(explained_share=explained, gain=SimpleNamespace(share_removed=(held_out, 0.9, 1.0)))
+    seen = SimpleNamespace(explained_share=explained, gain=SimpleNamespace(share_removed=held_out, surely_removed=0.9))
     assert Diagnosis.explains_all.fget(seen) is all_of_it
 
 
@@ -756,17 +756,17 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
 
 
 @pytest.mark.parametrize(
-    ("removed", "most", "said"),
+    ("removed", "surely", "most", "said"),
     [
-        ((0.96, 0.0, 0.999), False, "removes 96 % of the error on trials not used, and runs are too few"),
-        ((0.96, 0.9, 0.99), False, "Adding it removes 96 % of the error on trials not used."),
-        ((0.4, 0.0, 0.9), False, "a model whose hull may be 5 % off"),
-        ((-0.1, -0.5, 0.6), False, "of the error on trials not used does not show"),
-        ((0.4, 0.0, 0.9), True, "all of the error in 2 of 3 runs left out in turn; the other shows coefficients that"),
-        ((0.96, 0.9, 0.99), True, "Adding it removes 96 % of the error on trials not used."),
+        (0.96, 0.0, False, "removes 96 % of the error on trials not used, and runs are too few"),
+        (0.96, 0.9, False, "Adding it removes 96 % of the error on trials not used."),
+        (0.4, 0.0, False, "a model whose hull may be 5 % off"),
+        (-0.1, -0.5, False, "of the error on trials not used does not show"),
+        (0.4, 0.0, True, "all of the error in 2 of 3 runs left out in turn; the other shows coefficients that"),
+        (0.96, 0.9, True, "Adding it removes 96 % of the error on trials not used."),
     ],
 )
-def test_how_sure_a_gain_is_stands_beside_it(removed, most, said):
-    gain = SimpleNamespace(share_removed=removed, tells_most_runs=most, runs_told=(2, 3))
+def test_how_sure_a_gain_is_stands_beside_it(removed, surely, most, said):
+    gain = SimpleNamespace(share_removed=removed, surely_removed=surely, tells_most_runs=most, runs_told=(2, 3))
     seen = SimpleNamespace(gain=gain, options=SimpleNamespace(leeway=0.05), choice=None)
     assert said in saying._gained(seen, "it", "on trials not used")

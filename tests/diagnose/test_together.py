@@ -56,7 +56,7 @@ def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, ve
     ids=["most of it", "little", "all of most runs", "values that bend"],
 )
 def test_what_all_trials_were_looked_at_for_must_be_told_by_the_others(share, most, by_run, untold):
-    gain = SimpleNamespace(share_removed=(share, share, share), tells_most_runs=most, leaves_beside=lambda: True)
+    gain = SimpleNamespace(share_removed=share, surely_removed=share, tells_most_runs=most, leaves_beside=lambda: True)
     causes = (SimpleNamespace(runs="of each" if by_run else None),)
     seen = SimpleNamespace(gain=gain, causes=causes, together=SimpleNamespace(settled=True))
     assert Diagnosis._told_by_none.fget(seen) is untold

@@ -121,7 +121,7 @@ def test_positions_that_wander_do_not_hide_what_a_cause_explains_of_unseen_trial
     gain = held_out(Found(base, final, [cause]), Unseen(bench, made[2:]))
     assert gain.floor == 6 * sum(one.n_samples for one in made[2:])
     assert abs(gain.excess[:, 1].sum()) < 4.0 * gain.chance
-    assert gain.share_removed[0] > 0.9
+    assert gain.share_removed > 0.9
     assert not gain.remains
     # A heading that wanders as far may be an error of the model, and is counted with its memory.
     bench.know(replace(bench.noise, channels=bench.noise.channels | {"psi": noise}))
