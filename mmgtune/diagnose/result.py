@@ -30,7 +30,7 @@ class Diagnosis(Answer):
     unlike_any what values of each run take of mass and inertia that no ship has, in words; "" for nothing
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
-    jumped    runs whose position jumps, and that were taken in parts there, in words
+    jumped    largest jump of the position of each run that has any, and that was taken in parts there [m]
     contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
     swell     that the ship swings in waves, and that nothing is left beside that; "" where it is not so
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
@@ -145,7 +145,7 @@ class Diagnosis(Answer):
             "sentence": said.sentence,
             "headline": said.headline,
             "explained": said.explained,
-            "jumped": list(self.jumped),
+            "jumped": dict(self.jumped),
             "warnings": list(self.warnings),
             "coverage": self.coverage.to_dict() if self.coverage else {},
             "record": self.record.to_dict() if self.record else None,

@@ -34,6 +34,7 @@ from .contributions import set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
 from .jumped import in_parts
+from .jumped import in_words as jumps_in_words
 from .leftover import NOTICED, SWELLS, beside_swell, leftover
 from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
@@ -121,7 +122,7 @@ def _looked_at(
     odd = oddities(trials.trials, profile.L_pp) if choice is None else []
     odd += _derived(trials.trials)
     whole = trials.trials
-    jumped: list[str] = []
+    jumped: dict[str, float] = {}
     if choice is None and options.restart is None:
         trials, jumped = in_parts(trials)
     trials = in_pieces(trials, options.fit_options())
@@ -152,12 +153,13 @@ def _looked_at(
     result, found = judge.answer(found, brought)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
-    beside = [
-        f"{capital(one)}: it was taken in parts there, which begin where their own first samples say." for one in jumped
-    ]
+    apart = (
+        f"{capital(jumps_in_words(jumped))}: runs are taken in parts there, which begin where their own samples say."
+    )
+    beside = [apart] if jumped else []
     odd += [f"{capital(said)}." for said in reversals(bench.model, seen)]
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
-    result = replace(result, warnings=warnings, jumped=tuple(jumped))
+    result = replace(result, warnings=warnings, jumped=jumped)
     if result.verdict != "unexplained" or choice is not None:
         return result
     if contradicted := _contradicted(whole):

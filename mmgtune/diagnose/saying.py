@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from ..phrases import capital, in_percent, listed
 from .gain import MOST
+from .jumped import in_words as jumps_in_words
 from .leftover import change_in_words, in_words
 from .retuned import besides, far_off, weighed
 from .retuned import in_words as moved_in_words
@@ -58,7 +59,7 @@ def said(answer: Answer) -> Said:
         pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
         first, *why = [*pieces, unknown.why]
         return Said(first, " ".join(filter(None, why)), unknown.leading, " ".join(more))
-    apart = f"{capital(listed(answer.jumped, 3))}. Apart from that: " if answer.jumped else ""
+    apart = f"{capital(jumps_in_words(answer.jumped))}. Apart from that: " if answer.jumped else ""
     if answer.verdict == "none":
         first, *why = _of_none(answer)
         return Said(apart + first, " ".join(filter(None, why)), beside=" ".join(more))

@@ -178,7 +178,7 @@ class Answer(Plotted):
     instead: Instead | None = None
     contradicted: str = ""
     swell: str = ""
-    jumped: tuple[str, ...] = ()
+    jumped: Mapping[str, float] = field(default_factory=dict)
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
     more: bool = False

@@ -38,6 +38,7 @@ from .wording import (
 
 _WORDS = {
     "none": "nothing found",
+    "jumps": "a position that jumps",
     "found": "cause found",
     "not-separable": "causes that cannot be told apart",
     "unexplained": "something unknown",
@@ -92,7 +93,7 @@ def build(record: DiagnosisRecord) -> Page:
     ship = ship_name(data)
     return Page(
         title=f"{ship}: diagnosis",
-        eyebrow=f"{ship} · {_WORDS.get(data['verdict'], clean(data['verdict']))}",
+        eyebrow=f"{ship} · {_kind(data)}",
         verdict=clean(data.get("headline") or data["sentence"]),
         banners=generated_banner(data["trials"]),
         warnings=(
@@ -103,6 +104,12 @@ def build(record: DiagnosisRecord) -> Page:
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
     )
+
+
+def _kind(data: Mapping[str, Any]) -> str:
+    """The verdict in a few words."""
+    verdict = "jumps" if data["verdict"] == "none" and data.get("jumped") else data["verdict"]
+    return _WORDS.get(verdict, clean(verdict))
 
 
 def _held_out(gain: Mapping[str, Any]) -> str:

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import diagnose
-from mmgtune.diagnose.jumped import in_parts
+from mmgtune.diagnose import diagnose, write_diagnosis
+from mmgtune.diagnose.jumped import in_parts, in_words
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
+from mmgtune.report import render
 from mmgtune.trial import TrialSet, load_trials
 from tests.hidden.plant import simulate, write
 
@@ -37,13 +38,13 @@ def test_a_run_is_divided_where_its_position_jumps(sailed):
     row = whole.n_samples // 2
     divided, told = in_parts(with_jump(sailed, id, (row, 16.0)))
     first, second = [one for one in divided.trials.values() if one.run == id]
-    assert told[0].startswith(f"the position of {id} jumps by 15.")  # of 16 m, beside the noise
+    assert told == {id: pytest.approx(16.0, abs=1.0)}  # beside the noise
     assert abs(first.n_samples - row) <= 1
     assert first.n_samples + second.n_samples == whole.n_samples
     assert second.begins == pytest.approx(whole.t[first.n_samples])
     before, after = (sailed.tune, divided.tune) if id in sailed.tune else (sailed.test, divided.test)
     assert [one for one in after if one not in before] == [first.id, second.id]
-    assert in_parts(sailed) == (sailed, [])
+    assert in_parts(sailed) == (sailed, {})
     for rows in ([row], [1], range(1, whole.n_samples, 2)):  # of pieces too short for a trial none is left
         pieces = sailed.divided({id: rows})
         assert sorted([*pieces.tune, *pieces.test]) == sorted(pieces.trials)
@@ -53,12 +54,27 @@ def test_a_receiver_that_jumps_all_the_time_is_left(sailed):
     id = "turn_p20"
     rows = range(60, sailed.trials[id].n_samples - 60, 60)
     shaken = with_jump(sailed, id, *((row, 20.0 * (-1.0) ** k) for k, row in enumerate(rows)))
-    assert in_parts(shaken) == (shaken, [])
+    assert in_parts(shaken) == (shaken, {})
 
 
-def test_nothing_else_is_blamed_for_it(sailed):
+def test_nothing_else_is_blamed_for_it(sailed, tmp_path):
     id = sailed.tune[-1]
     result = diagnose(load_profile("suzaku"), with_jump(sailed, id, (sailed.trials[id].n_samples // 2, 16.0)), OPTIONS)
     assert (result.verdict, result.causes) == ("none", ())
-    assert result.sentence().startswith(f"The position of {id} jumps by")
+    assert result.sentence().startswith(f"The position jumps in {id} by 1")
     assert any("taken in parts there" in one for one in result.warnings)
+    write_diagnosis(result, tmp_path / "run")
+    assert "a position that jumps" in render(tmp_path / "run")[0].read_text()
+
+
+@pytest.mark.parametrize(
+    ("jumped", "said"),
+    [
+        ({}, ""),
+        ({"a": 11.72, "b": 3.0}, "the position jumps in a by 11.7 m and b by 3 m"),
+        ({"a": 11.7, "b": 12.6, "c": 11.7, "d": 12.0}, "the position jumps in 4 runs, by 11.7 to 12.6 m"),
+        (dict.fromkeys("abcd", 2.0), "the position jumps in 4 runs, by 2 m"),
+    ],
+)
+def test_many_runs_that_jump_are_one_phrase(jumped, said):
+    assert in_words(jumped) == said
