@@ -6,7 +6,8 @@ workbench         trials, model with every effect, refits
 noise, inputs     what chance does to residuals; beliefs, winds: what is not known of the hull and of causes
 linear, screening signatures beyond re-tuning, scores, critical values
 search            forward search, backward look, rivals; base_fit: where it begins
-refitting, refit  which hypotheses are refitted and how far; whether one is believed, and what rivals it
+shortlist, refitter which hypotheses are refitted in a look; one of them: from where, and how far
+refitting, refit  all of a look, the best first; whether one is believed, and what rivals it
 contributions     what each cause brings beside the others; traces; record: how often such an answer was right
 unseen, gain      fitted points on trials they were not fitted to, and what causes gain there
 intervals, leftover, separate         sizes, what is left, the trial that would tell

@@ -15,7 +15,8 @@ from .hypotheses import Hypothesis
 from .intervals import Estimate
 from .linear import linearise
 from .refit import ENOUGH
-from .refitting import Known, Refitting, Stopped
+from .refitter import Known, Refitter, Stopped
+from .refitting import Refitting
 from .screening import scores
 from .wording import parameters_in_words
 from .workbench import Point, Workbench
@@ -93,8 +94,8 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many)]
     linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases])
     try:
-        refitting = Refitting(bench, as_it_is, linear, Known(), every=True, enough=as_it_is.chi2 - MATTERS * fall)
-        fits = refitting.best(scores(linear, asked), quick=False)
+        refitter = Refitter(bench, as_it_is, linear, Known(), enough=as_it_is.chi2 - MATTERS * fall)
+        fits = Refitting(refitter, every=True).best(scores(linear, asked), quick=False)
     except Stopped:
         return None
     fits.sort(key=lambda fit: -fit.gain)

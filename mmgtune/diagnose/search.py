@@ -23,7 +23,8 @@ from .beside import free_with, kept_free
 from .hypotheses import Hypothesis
 from .linear import Linear, linearise
 from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
-from .refitting import STRONG, Given, Known, Refitting, Stopped, hopeless_beside
+from .refitter import STRONG, Given, Known, Refitter, Stopped, hopeless_beside
+from .refitting import Refitting
 from .screening import Score, scores
 from .workbench import Point, Workbench
 
@@ -193,7 +194,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     linear = linearise(bench, point, names, varying=varying)
     ranked = scores(linear, hypotheses)
     known = Known()
-    best = Refitting(bench, point, linear, known).best(ranked, quick=True)
+    best = Refitting(Refitter(bench, point, linear, known)).best(ranked, quick=True)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
     at_best = linear if richest is point else linearise(bench, richest, names)
     noise = _noise_at(bench, at_best)
@@ -206,7 +207,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
         ranked = scores(linear, hypotheses)
         known.outdate()
     given = _as_given(bench, point, hypotheses)
-    fitted = Refitting(bench, point, linear, known, given).best(ranked, quick=False)
+    fitted = Refitting(Refitter(bench, point, linear, known, given)).best(ranked, quick=False)
     refits = believable_first(fitted, bench.options.level)
     if refits and refits[0] is not fitted[0] and fitted[0].by_chance(bench.options.level):
         told = _in_a_form_told(refits, fitted[0], bench.options.level)

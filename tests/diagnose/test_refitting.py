@@ -11,9 +11,11 @@ from mmgtune.diagnose import DiagnoseOptions, workbench
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.linear import linearise
-from mmgtune.diagnose.refitting import HARDLY_MORE, HOPELESS, Known, Refitting
+from mmgtune.diagnose.refitter import HARDLY_MORE, HOPELESS, Known, Refitter
+from mmgtune.diagnose.refitting import Refitting
 from mmgtune.diagnose.screening import scores
 from mmgtune.diagnose.search import _as_given as as_given
+from mmgtune.diagnose.shortlist import Shortlist
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.fitting.least_squares import LeastSquaresResult
 from mmgtune.motions import simulate_trials
@@ -39,7 +41,7 @@ def first_look(hidden, effects):
     bench = make_workbench(profile, made, options, [name for one in known for name in one.names])
     point = base_fit(bench)
     linear = linearise(bench, point, [name for one in known for name in one.names])
-    return Refitting(bench, point, linear, Known()), {s.hypothesis.names: s for s in scores(linear, known)}
+    return Refitter(bench, point, linear, Known()), {s.hypothesis.names: s for s in scores(linear, known)}
 
 
 @pytest.fixture(scope="module")
@@ -49,79 +51,79 @@ def look():
 
 
 def test_what_a_start_leaves_is_foretold_without_a_refit(look):
-    refitting, by_names = look
-    bench, point = refitting.bench, refitting.point
+    refitter, by_names = look
+    bench, point = refitter.bench, refitter.point
     null, there = bench.null(NAMES), bench.sub_box(NAMES).to_unit(list(CURRENT.values()))
     starts = np.array([[*point.unit, *(null + share * (there - null))] for share in (0.0, 0.5, 1.0, -1.0)]).T
-    left = refitting._foretelling(point, by_names.values()).left(by_names[NAMES].hypothesis, starts)
+    left = Shortlist(refitter)._foretelling(point, by_names.values()).left(by_names[NAMES].hypothesis, starts)
     assert (left < 0.05 * point.chi2).all()
     end = bench.refit((*point.names, *NAMES), starts[:, 2:3], point.offsets, max_iterations=8)
     assert end.chi2 < 1.1 * bench.problem.n_residuals  # the targets had gone far astray
     other = by_names["effects.flap.factor",]
-    starts = refitting._starts(point, other, ())
-    left = refitting._foretelling(point, [other]).left(other.hypothesis, starts)
+    starts = refitter.starts(point, other, ())
+    left = Shortlist(refitter)._foretelling(point, [other]).left(other.hypothesis, starts)
     assert 0.5 * point.chi2 < left[0] <= point.chi2
 
 
 def test_what_is_foretold_is_that_of_each_alone(look):
-    refitting, by_names = look
-    together = refitting._foretelling(refitting.point, by_names.values())
+    refitter, by_names = look
+    together = Shortlist(refitter)._foretelling(refitter.point, by_names.values())
     for score in by_names.values():
-        starts = refitting._starts(refitting.point, score, (1.0, 0.5))
-        alone = refitting._foretelling(refitting.point, [score])
+        starts = refitter.starts(refitter.point, score, (1.0, 0.5))
+        alone = Shortlist(refitter)._foretelling(refitter.point, [score])
         of_all, of_one = (one.left(score.hypothesis, starts) for one in (together, alone))
         assert len(of_all) == starts.shape[1]
         np.testing.assert_allclose(of_all, of_one, rtol=1e-9)
 
 
 def test_a_step_that_is_tried_leads_where_it_says_and_nowhere_worse(look):
-    refitting, by_names = look
-    point, score = refitting.point, by_names[NAMES]
-    foretelling = refitting._foretelling(point, [score])
-    starts = refitting._starts(point, score, (1.0, 0.5))
+    refitter, by_names = look
+    point, score = refitter.point, by_names[NAMES]
+    foretelling = Shortlist(refitter)._foretelling(point, [score])
+    starts = refitter.starts(point, score, (1.0, 0.5))
     where, left = foretelling.tried(score.hypothesis, starts)
     assert where.shape == starts.shape
     np.testing.assert_array_equal(where[: -len(NAMES)], starts[: -len(NAMES)])  # what else is free follows linearly
     np.testing.assert_array_equal(where, np.clip(where, 0.0, 1.0))
-    (there,) = refitting.bench.refits((*point.names, *NAMES), where[:, :1], point.offsets, max_iterations=4)
+    (there,) = refitter.bench.refits((*point.names, *NAMES), where[:, :1], point.offsets, max_iterations=4)
     assert there.chi2 < 1.1 * left[0] < 0.1 * point.chi2
     _, again = foretelling.tried(score.hypothesis, where)
     assert (again <= left).all()
 
 
 def test_beside_one_that_leaves_noise_others_are_given_up(look):
-    refitting, by_names = look
-    known, n = refitting.known, refitting.bench.problem.n_residuals
-    assert refitting.strong
-    assert refitting._hopeless == np.inf
-    best = refitting.best(list(by_names.values()), quick=False)
+    refitter, by_names = look
+    known, n = refitter.known, refitter.bench.problem.n_residuals
+    assert refitter.strong
+    assert refitter.hopeless == np.inf
+    best = Refitting(refitter).best(list(by_names.values()), quick=False)
     assert best[0].hypothesis.names == NAMES
     assert known.least <= best[0].point.chi2 < 1.1 * n
-    assert refitting._hopeless == n + HOPELESS * max(known.least - n, HARDLY_MORE * n)
+    assert refitter.hopeless == n + HOPELESS * max(known.least - n, HARDLY_MORE * n)
     other = next(refit for refit in best if refit.hypothesis.tag == "heading-bias")
-    assert refitting._hopeless < other.point.chi2 <= refitting.point.chi2
+    assert refitter.hopeless < other.point.chi2 <= refitter.point.chi2
     known.outdate()
-    assert refitting._hopeless == np.inf
+    assert refitter.hopeless == np.inf
 
 
 @pytest.mark.parametrize("chi2", [np.nan, np.inf, 1e30])
 def test_a_refit_that_runs_away_ends_where_it_began_and_explains_nothing(look, chi2):
     """A chi-squared that is no number ended a diagnosis with a report of a bug."""
-    refitting, by_names = look
-    score, point = by_names[NAMES], refitting.point
-    lost = refitting._starts(point, score, ())[:, 0] * (np.nan if np.isnan(chi2) else 1.0)
+    refitter, by_names = look
+    score, point = by_names[NAMES], refitter.point
+    lost = refitter.starts(point, score, ())[:, 0] * (np.nan if np.isnan(chi2) else 1.0)
     end = replace(point, names=(*point.names, *NAMES), unit=lost, chi2=chi2)
-    refit = refitting._judged(score, end, None, 1)
+    refit = Refitting(refitter)._judged(score, end, None, 1)
     assert (refit.gain, refit.point.chi2) == (0.0, point.chi2)
-    assert refit.point.unit[-2:].tolist() == refitting.bench.null(NAMES).tolist()
+    assert refit.point.unit[-2:].tolist() == refitter.bench.null(NAMES).tolist()
     assert np.isfinite(refit.point.unit).all()
     assert refit.evidence < 0.0
 
 
 @pytest.mark.parametrize("lost", [{"J": np.nan}, {"J": np.inf}, {"J": np.inf, "promised": np.inf}])
 def test_refits_have_an_order_whatever_ran_away(look, monkeypatch, lost):
-    refitting, _ = look
-    bench, point = refitting.bench, refitting.point
+    refitter, _ = look
+    bench, point = refitter.bench, refitter.point
 
     def solved(problem, starts, **_):
         there = LeastSquaresResult(starts[:, 0], problem.offsets, 1.0, 1, True, promised=np.nan)
@@ -139,13 +141,13 @@ ALIKE = ("heading-bias", "gyro-scale", "gyro-bias", "speed-scale", "rpm-scale", 
 
 def test_where_little_is_left_what_does_not_earn_its_price_is_not_refitted():
     """But for the best three, and what a score says little of: a lag has one side only, a loading a form."""
-    refitting, by_names = first_look({}, (*ALIKE, "steering-lag", "loading"))
-    assert not refitting.strong
+    refitter, by_names = first_look({}, (*ALIKE, "steering-lag", "loading"))
+    assert not refitter.strong
     scored = sorted(by_names.values(), key=lambda score: -score.score)
-    price = refitting.bench.price
+    price = refitter.bench.price
     earns = {s.hypothesis.tag for s in scored if s.score / s.inflation > len(s.hypothesis.names) * price}
     best = {s.hypothesis.tag for s in scored[:3]}
-    fitted = {refit.hypothesis.tag for refit in refitting.best(list(by_names.values()), quick=False)}
+    fitted = {refit.hypothesis.tag for refit in Refitting(refitter).best(list(by_names.values()), quick=False)}
     assert best <= fitted
     assert {"steering-lag", "loading"} <= fitted
     assert set(ALIKE) - best - earns
@@ -154,7 +156,7 @@ def test_where_little_is_left_what_does_not_earn_its_price_is_not_refitted():
 
 @pytest.mark.parametrize("chi2", [np.inf, np.nan])
 def test_nothing_is_looked_for_where_what_has_no_leeway_runs_away(monkeypatch, chi2):
-    refitting, _ = first_look({}, ("current",))
-    bench, point = refitting.bench, refitting.point
+    refitter, _ = first_look({}, ("current",))
+    bench, point = refitter.bench, refitter.point
     monkeypatch.setattr(bench, "refit", lambda *_, **__: replace(point, chi2=chi2))
     assert as_given(bench, point, known_causes(bench.model.profile, bench.trials, bench.options)) is None

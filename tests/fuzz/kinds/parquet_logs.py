@@ -24,11 +24,11 @@ def odd_values(rng: np.random.Generator, columns: dict[str, Any]) -> dict[str, A
     """Some rows of a column, or all from somewhere on, of an odd value or scaled."""
     name = pick(rng, list(columns))
     values = np.array(columns[name])
-    if not len(values):
+    if not len(values) or values.dtype.kind != "f":
         return columns
     first = int(rng.integers(len(values)))
     rows = slice(first, first + int(pick(rng, (1, 2, len(values)))))
-    if values.dtype.kind == "f":
+    with np.errstate(over="ignore"):
         values[rows] = pick(rng, ODD) if rng.random() < 0.5 else values[rows] * pick(rng, (-1.0, 10.0, 1e9, 1e300))
     return {**columns, name: values}
 
