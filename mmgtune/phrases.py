@@ -34,3 +34,9 @@ def listed(words: Sequence[str], most: int | None = None) -> str:
     if most is not None and len(words) > most:
         words = [*words[: most - 1], f"{len(words) - most + 1} more"]
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def aboard(ahead: float, across: float, digits: int = 3) -> str:
+    """How far [m] one place of a ship is from another: "12 m aft and 3 m to starboard"."""
+    way, side = "forward" if ahead >= 0.0 else "aft", "to starboard" if across >= 0.0 else "to port"
+    return f"{abs(ahead):.{digits}g} m {way} and {abs(across):.{digits}g} m {side}"

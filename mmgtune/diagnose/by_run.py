@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy.special import fdtrc
 
 from ..arrays import FloatArray
@@ -204,7 +205,7 @@ class ByRun:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
             where = [name_of(self.groups[k]) for k in shown]
             text += f" in {listed(where, 4)}, and none for certain in the other {others}" if shown and others else ""
-        return text + self._within() + self._doubted
+        return text + self._all_alike_towards() + self._within() + self._doubted
 
     @property
     def _doubted(self) -> str:
@@ -224,9 +225,21 @@ class ByRun:
     @property
     def _much_alike(self) -> bool:
         """Whether what has a direction differs little beside its mean."""
-        towards = [self.towards(k) for k in range(len(self.groups))]
-        values = np.array([self.size(k)[0] * np.exp(1j * told[0]) for k, told in enumerate(towards) if told])
+        values = self._vectors
         return bool(len(values)) and bool(np.abs(values - values.mean()).max() < ALIKE * abs(values.mean()))
+
+    @property
+    def _vectors(self) -> npt.NDArray[np.complex128]:
+        """Values of the groups in the plane, of what has a direction."""
+        towards = [self.towards(k) for k in range(len(self.groups))]
+        return np.array([self.size(k)[0] * np.exp(1j * told[0]) for k, told in enumerate(towards) if told])
+
+    def _all_alike_towards(self) -> str:
+        """The direction of values that are much the same, in words; "" for others."""
+        if not self._much_alike:
+            return ""
+        sense = "towards" if self.effect.told_as else "from"
+        return f", {sense} {round(math.degrees(np.angle(self._vectors.mean()))) % 360}°"
 
     @property
     def _of_what(self) -> str:

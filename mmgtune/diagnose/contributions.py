@@ -21,7 +21,7 @@ from ..trial import Trial
 from .gain import INDICES, LOST, measured
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
-from .leftover import Leftover
+from .leftover import Leftover, leftover
 from .linear import typical
 from .of_hull import AS_WELL, explained_by_hull
 from .refit import WORTH
@@ -130,6 +130,12 @@ class Contribution:
         """Whether it shows in a channel of which the others remove little else, such as that of a gyro that is off."""
         channels = self.channels or {}
         return any(error >= SHOWS and self.own.get(name, 0.0) >= OWN * self.form for name, error in channels.items())
+
+    @property
+    def apart(self) -> bool:
+        """Whether it shows in a channel of its own and is nothing to all others, as the filter of a gyro is: no other
+        cause looks different beside it."""
+        return self.stands_out and self.share < FORM and self.seen < HARDLY_SEEN
 
     @property
     def unnoticed(self) -> bool:
@@ -258,6 +264,17 @@ def set_aside(
         fewer = _fewer(bench, found)
         brought = _weighed(bench, found, fewer, _brought(bench, found, fewer, unseen))
     return traces, brought
+
+
+def removed_by(bench: Workbench, traces: Sequence[Aside], whole: Point, without_them: Point) -> float:
+    """What traces remove of the variance beyond noise, as a share of it; nothing where one of them does harm, or may be
+    a hull further off: what it removes is of something else.
+
+    whole  the point with them
+    """
+    if not traces or any(one.contribution.harmful or one.contribution.like_hull for one in traces):
+        return 0.0
+    return max(leftover(bench, without_them).unknown - leftover(bench, whole).unknown, 0.0)
 
 
 def _weighed(

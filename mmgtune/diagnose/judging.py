@@ -25,7 +25,7 @@ from .gathering import error_of, evidence
 from .hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
 from .instead import instead_of_tuning
 from .intervals import Estimate, estimates
-from .leftover import Leftover, leftover
+from .leftover import NOTICED, Leftover, leftover
 from .legs import Difference
 from .of_hull import in_words as explained_in_words
 from .refit import WORTH, Refit, kin_among
@@ -54,7 +54,7 @@ class Judge:
     asked     hypotheses that were looked for, and those that do the same as a target
     unseen    what answers are judged by: the trials kept for testing, or each run in turn
     before    what the model without any cause leaves
-    traces    what was set aside
+    traces    what was set aside; of_traces: what they remove of ``Leftover.unknown``
     choice    windows of voyages, None for trials; differing: what differs between the voyages
     """
 
@@ -67,6 +67,7 @@ class Judge:
     unseen: Unseen
     before: Leftover
     traces: Sequence[Aside]
+    of_traces: float
     choice: Choice | None
     differing: Sequence[Difference]
 
@@ -89,7 +90,7 @@ class Judge:
                 result, found = other, fewer  # as little is believed, and it takes less
             if doubted is not None:
                 result = replace(result, leading=Leading.of(result, other))
-        if result.is_chance and not self.before.noticed and not self.hooks.stop():
+        if result.is_chance and self._may_be_noise(result) and not self.hooks.stop():
             alone = with_only(self.bench, found, [])
             other = self._judged(alone, [])
             result, found = (other, alone) if other.verdict == "none" else (result, found)
@@ -101,6 +102,12 @@ class Judge:
             self.hooks.on_phase("asking what re-tuning may stand for")
             result = replace(result, instead=instead_of_tuning(self.bench, found.base, self.asked))
         return result, found
+
+    def _may_be_noise(self, result: Diagnosis) -> bool:
+        """Whether what the re-tuned model leaves is next to nothing, or has no shape and is next to nothing beside
+        noise of the sensors that fades slowly."""
+        shapeless = not self.before.structured and result.chi2[0] < 1.0 + NOTICED
+        return shapeless or not self.before.noticed
 
     def _without_doubtful(
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]
@@ -173,6 +180,7 @@ class Judge:
             more=found.more,
             read_off=bench.read_off,
             unlike_any=unlike_any(retuned(bench, found.final)) if any(one.by for one in found.causes) else "",
+            of_traces=self.of_traces if found.causes else 0.0,
             wall_s=0.0,
             interrupted=self.hooks.stop(),
         )

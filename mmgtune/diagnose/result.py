@@ -37,6 +37,7 @@ class Diagnosis(Answer):
     leading      the first of the causes, where these are not believed together and it removes most alone; None else
     together  what was found without the trials kept for testing, where these had to be looked at too; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
+    of_traces variance beyond noise that traces account for, as a share of it
     more      whether much is left beside as many causes as are believed together
     """
 

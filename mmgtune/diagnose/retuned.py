@@ -194,8 +194,8 @@ def _together(moved: Sequence[Retuned]) -> str:
     if not followed or not _astray(moved):
         return ""
     return (
-        f"Re-tuning moved {_changes(followed)}, but what drives the ship with it, to where no ship's is: "
-        "these trials do not tell one from the other, so that neither is named."
+        f"Re-tuning moved {_changes(followed)}, and with that the thrust, or the flow to the propeller, to what no "
+        "ship's is: these trials do not tell one from the other, so neither is named."
     )
 
 

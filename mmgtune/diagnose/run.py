@@ -30,7 +30,7 @@ from ..trial import Trial, TrialSet, VoyageSet, oddities
 from ..trial.schema import MOTION
 from ..trial.set_checks import turn_away
 from ..trial.swell import period_of, swings
-from .contributions import set_aside
+from .contributions import removed_by, set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
 from .jumped import in_parts
@@ -142,14 +142,18 @@ def _looked_at(
     hooks.on_phase("measuring the gain")
     before = leftover(bench, found.base)
     unseen = Unseen(bench, test)
+    with_traces = found.final
     traces, brought = set_aside(bench, found, unseen, before)
+    of_traces = removed_by(bench, traces, with_traces, found.final)
     differing: Sequence[Difference] = ()
     if choice is not None and not hooks.stop():
         hooks.on_phase("comparing the voyages")
         differing = differences(bench, found.final, choice.voyages)
     hooks.on_phase("gathering the evidence")
     asked = [*known, *in_place]
-    judge = Judge(bench, profile, options, provenance, hooks, asked, unseen, before, traces, choice, differing)
+    judge = Judge(
+        bench, profile, options, provenance, hooks, asked, unseen, before, traces, of_traces, choice, differing
+    )
     result, found = judge.answer(found, brought)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []

@@ -19,7 +19,7 @@ from .causes import Candidate, Cause, Detectability, Trace
 from .contributions import Contribution
 from .gain import MOST, Gain
 from .instead import Instead
-from .leftover import Leftover
+from .leftover import NOTICED, Leftover
 from .legs import Difference
 from .record import Record, kind_of, record_of
 from .retuned import Retuned
@@ -184,6 +184,7 @@ class Answer(Plotted):
     more: bool = False
     read_off: Mapping[str, float] = field(default_factory=dict)
     unlike_any: str = ""
+    of_traces: float = 0.0
 
     @property
     def verdict(self) -> str:
@@ -193,7 +194,7 @@ class Answer(Plotted):
         if self.swell:
             return "none"
         bends = any(cause.runs for cause in self.causes)  # where it was found that explains much of anything
-        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends or self._misses_each)
+        fails = self.gain.remains and (self.rest >= NOTICED or self.gain.worse or bends or self._misses_each)
         fails = fails or bool(self.unclear)
         shaped = self.leftover.structured or bool(self.leftover.offsets or self.leftover.changed) or self.misses_test
         if shaped if not self.causes else fails or self._mostly_left:
@@ -201,6 +202,11 @@ class Answer(Plotted):
         if self.groups:
             return "not-separable"
         return "found" if self.causes or self.between else "none"
+
+    @property
+    def rest(self) -> float:
+        """Variance beyond noise, as a share of it, that neither causes nor traces account for."""
+        return self.leftover.unknown - self.of_traces
 
     @property
     def kind(self) -> str:
@@ -240,17 +246,18 @@ class Answer(Plotted):
             return "its size is at the end of its range, and it leaves more than noise"
         if len(brought) < 2:
             return not_told if self.gain.share_removed < TOLD else ""
-        if self.more or len(brought) >= TOO_MANY:
+        terms = [one for one in brought if not one.apart]
+        if self.more or len(terms) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
         if self._faint:
             return "all that they remove is little beside noise, and other sums would"
-        if self.leftover.unknown > BESIDE and not self.explains_all:
+        if self.rest > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
         bends = any(cause.runs for cause in self.causes)
-        if len(brought) > 2 and self.groups and (bends or min(one.seen for one in brought) < OF_MANY):
+        if len(terms) > 2 and self.groups and (bends or min(one.seen for one in terms) < OF_MANY):
             return "not all of them can be told from others"
         several = sum(bool(cause.runs) for cause in self.causes) > 1
-        if several and (len(brought) > 2 or not self.explains_all):
+        if several and (len(terms) > 2 or not self.explains_all):
             return "more than one of them differs from run to run"
         if self.gain.share_removed < TOLD:
             return "it removes little of the error where nothing was fitted"
@@ -339,7 +346,7 @@ class Answer(Plotted):
         if self.gain.held_out != "each" or self.gain.share_removed < AT_ALL:
             return False
         alone = len(self.contributions) == 1 and not self.leaves_open
-        if alone and self.explained_share >= ALL and not self.leftover.noticed:
+        if alone and self.explained_share >= ALL and self.rest < NOTICED:
             return False
         return self.gain.left**2 > BEYOND_OPEN * (1.0 + self.leftover.left_open)
 

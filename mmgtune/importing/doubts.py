@@ -12,6 +12,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from ..arrays import FloatArray
+from ..phrases import aboard
 from ..physics.frame import to_earth
 from ..trial import Trial
 from ..trial.finding import Finding
@@ -173,7 +174,7 @@ def one_axis(trial: Trial, where: str, log_map: LogMap) -> list[Finding]:
         elif log_map.point == "midship":
             return []
         else:
-            what = f"velocities seem to be of a point {best.ahead:.3g} m forward of that of the positions"
+            what = f"velocities seem to be of a point {aboard(best.ahead, best.across)} of that of the positions"
             fix = f"say {point} in [velocity], or where the antenna is in [antenna]"
         why = f"{said}; such a lever explains {100.0 * (1.0 - best.left):.0f} % of it"
         return [Finding("warning", what, where, why, fix, "shifted" if best.shifted else "")]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
+from ..phrases import aboard
 from ..physics.frame import to_earth, to_ship
 from ..trial.kinematics import white_noise
 from ..trial.smoothing import FEWEST, smoothed, time_scale
@@ -25,7 +26,7 @@ def at_midship(columns: dict[str, FloatArray], log_map: LogMap) -> list[str]:
     north, east = to_earth(columns["psi"], ahead, abeam)
     columns["x"] = columns["x"] - north
     columns["y"] = columns["y"] - east
-    return [f"positions moved from the antenna, {ahead:g} m forward and {abeam:g} m to starboard of midship"]
+    return [f"positions moved from the antenna, {aboard(ahead, abeam, 6)} of midship"]
 
 
 def with_yaw_rate(t: FloatArray, columns: dict[str, FloatArray]) -> list[str]:
@@ -75,7 +76,7 @@ def moved(columns: dict[str, FloatArray], log_map: LogMap, point: str) -> list[s
         said.append("velocities had been moved to midship along earth axes instead of the ship's: that was undone")
     columns["u"] = columns["u"] + abeam * columns["r"]
     columns["v"] = columns["v"] - ahead * columns["r"]
-    where = "the antenna" if point == "antenna" else f"{ahead:g} m forward and {abeam:g} m to starboard of it"
+    where = "the antenna" if point == "antenna" else f"{aboard(ahead, abeam, 6)} of it"
     return [*said, f"velocities moved to midship from {where}"]
 
 

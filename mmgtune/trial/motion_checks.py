@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray, runs_of_true
 from ..inputs import INPUTS
-from ..phrases import counted
+from ..phrases import aboard, counted
 from ..units import DEG
 from .finding import Finding
 from .kinematics import (
@@ -225,7 +225,7 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
     fitting = [(miss, f"if read {name}", MENDED[name]) for name, miss in misfits.items() if miss < enough]
     lever = lever_of(trial.columns)
     if lever is not None and lever.likely and FREER * lever.misfit < enough:
-        place = f"if they are of a point about {lever.x:.2g} m forward and {lever.y:.2g} m to starboard of midship"
+        place = f"if they are of a point about {aboard(lever.x, lever.y, 2)} of midship"
         fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
     fitting.sort()
     fits = "they fit " + ", or ".join(words for _, words, _ in fitting)

@@ -284,9 +284,11 @@ def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
         return ByRun(find_effect("wind"), ("speed", "direction"), "trial", labels, ids, tuple(rows))
 
     assert runs((10.2, 239.6), (10.2, 244.2), (9.6, 242.4), (11.6, 238.0)).sentence == (
-        "The wind was much the same in each run: 9.6 to 11.6 m/s"
+        "The wind was much the same in each run: 9.6 to 11.6 m/s, from 241°"
     )
-    assert runs((10.2, 359.0), (10.2, 1.0)).sentence.startswith("The wind was much the same")
+    about_north = runs((10.2, 359.0), (10.2, 1.0)).sentence
+    assert about_north.startswith("The wind was much the same")
+    assert about_north.endswith(", from 0°")
     assert runs((10.2, 239.6), (10.2, 59.6)).sentence.startswith("The wind differed from run to run")
 
 

@@ -14,10 +14,11 @@ from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose, saying
 from mmgtune.diagnose import contributions as contributed
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause, Trace
-from mmgtune.diagnose.contributions import Contribution, set_aside, squares, takes_the_rest
+from mmgtune.diagnose.contributions import Contribution, removed_by, set_aside, squares, takes_the_rest
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.intervals import Estimate
+from mmgtune.diagnose.judging import Judge
 from mmgtune.diagnose.leftover import Leftover, _slow
 from mmgtune.diagnose.noise import ChannelNoise
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
@@ -405,15 +406,18 @@ def sum_of(
     left=0.0,
     bent="",
     before=3.0,
+    of_traces=0.0,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
+    leftover = SimpleNamespace(structured=structured, unknown=left or 0.2 * structured)
     return SimpleNamespace(
         causes=[
             SimpleNamespace(runs=k < by_run, sized=sized, tag="wind", at_ends=at_ends) for k in range(len(brought))
         ],
         contributions=[("tag", one) for one in brought],
         groups=groups,
-        leftover=SimpleNamespace(structured=structured, unknown=left or 0.2 * structured),
+        leftover=leftover,
+        rest=Diagnosis.rest.fget(SimpleNamespace(leftover=leftover, of_traces=of_traces)),
         chi2=(before, 1.0),
         explains_all=explains_all,
         gain=SimpleNamespace(mostly_remains=remains, share_removed=removed, surely_removed=low),
@@ -426,6 +430,9 @@ def sum_of(
 
 CLEAR = Contribution(0.8)
 SMALL_BUT_CLEAR = Contribution(0.01, 0.004, {"r": 0.5}, {})
+APART = Contribution(0.003, 1e-6, {"psi": -0.4, "r": 0.3}, {}, own={"r": 0.4})
+"""A gyro that smooths over a fifth of a second: nothing but the yaw rate shows it."""
+
 GROUP = (("a", "b"),)
 
 
@@ -438,6 +445,10 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, SMALL_BUT_CLEAR, groups=GROUP), ""),
         (sum_of(CLEAR, CLEAR, CLEAR, CLEAR), "it takes 4 terms"),
         (sum_of(CLEAR, CLEAR, CLEAR, more=True), "it takes more than 3 terms"),
+        (sum_of(CLEAR, CLEAR, CLEAR, APART), ""),
+        (sum_of(CLEAR, CLEAR, CLEAR, CLEAR, APART), "it takes 5 terms"),
+        (sum_of(CLEAR, CLEAR, CLEAR, replace(APART, share=0.002)), "it takes 4 terms"),  # it shows elsewhere too
+        (sum_of(CLEAR, CLEAR, APART, groups=GROUP), ""),
         (sum_of(CLEAR, CLEAR, SMALL_BUT_CLEAR, groups=GROUP), "told from others"),
         (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP), ""),
         (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP, by_run=1), "told from others"),
@@ -447,6 +458,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "more than noise"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.03), "more than noise"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.03, explains_all=True), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.05, of_traces=0.049), ""),  # a trace that is there accounts for it
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.05, of_traces=0.02), "more than noise"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.01), ""),
         (sum_of(CLEAR, left=0.03), ""),
         (sum_of(CLEAR, CLEAR, before=1.09), "little beside noise"),
@@ -655,7 +668,8 @@ def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
 def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left, open_, explained, misses):
     seen = SimpleNamespace(
         gain=SimpleNamespace(held_out=held_out, left=left, share_removed=share, surely_removed=0.0),
-        leftover=SimpleNamespace(left_open=open_, noticed=False),
+        leftover=SimpleNamespace(left_open=open_),
+        rest=0.0,
         leaves_open=open_ > 0.3,
         explained_share=explained,
         contributions=[("steering-lag", CLEAR)],
@@ -770,3 +784,32 @@ def test_how_sure_a_gain_is_stands_beside_it(removed, surely, most, said):
     gain = SimpleNamespace(share_removed=removed, surely_removed=surely, tells_most_runs=most, runs_told=(2, 3))
     seen = SimpleNamespace(gain=gain, options=SimpleNamespace(leeway=0.05), choice=None)
     assert said in saying._gained(seen, "it", "on trials not used")
+
+
+@pytest.mark.parametrize(
+    ("noticed", "structured", "chi2", "may_be"),
+    [
+        (False, False, 1.1, True),
+        (True, False, 1.02, True),  # a receiver that wanders for minutes: 12 times the white noise, and no shape
+        (True, False, 1.1, False),
+        (True, True, 1.02, False),
+    ],
+)
+def test_what_has_no_shape_and_is_next_to_nothing_may_be_noise(noticed, structured, chi2, may_be):
+    judge = SimpleNamespace(before=SimpleNamespace(noticed=noticed, structured=structured))
+    assert Judge._may_be_noise(judge, SimpleNamespace(chi2=(chi2, 1.0))) is may_be
+
+
+@pytest.mark.parametrize(
+    ("trace", "removed"),
+    [
+        (SMALL_BUT_CLEAR, 0.04),
+        (replace(SMALL_BUT_CLEAR, share=-0.1), 0.0),  # it does harm: what it bends to is something else
+        (replace(SMALL_BUT_CLEAR, of_hull=1.0), 0.0),
+        (None, 0.0),
+    ],
+)
+def test_what_traces_remove_is_accounted_for_where_they_are_no_other_thing(trace, removed, monkeypatch):
+    monkeypatch.setattr(contributed, "leftover", lambda bench, point: SimpleNamespace(unknown=point))
+    traces = [SimpleNamespace(contribution=trace)] if trace else []
+    assert removed_by(None, traces, 0.01, 0.05) == pytest.approx(removed)

@@ -81,8 +81,8 @@ def test_what_else_is_far_off_is_told_where_nothing_is_wrong():
     )
     drive = Retuned("wake.w_P0", "wake", "1", 0.5, 0.7, 0.01)
     assert far_off([moved(0.7, 0.01), drive]).startswith(
-        "Re-tuning moved resistance going straight (R_0) by +40 %, but what drives the ship with it, to where no "
-        "ship's is: these trials do not tell one from the other"
+        "Re-tuning moved resistance going straight (R_0) by +40 %, and with that the thrust, or the flow to the "
+        "propeller, to what no ship's is: these trials do not tell one from the other"
     )
 
 
