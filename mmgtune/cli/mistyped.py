@@ -77,6 +77,29 @@ def as_options(words: list[str], ctx: Any) -> str:
     return " ".join([path_of(ctx), *(f"{flag} {shlex.quote(word)}" for flag, word in zip(wanted, words, strict=False))])
 
 
+def as_arguments(typed: list[str], ctx: Any) -> str:
+    """The command as it was typed, with what followed -p and -t as words, the profile first and the trials last; ""
+    where nothing followed."""
+    before = path_of(ctx).split()[1:]
+    if typed[: len(before)] != before:
+        return ""
+    first: list[str] = []
+    last: list[str] = []
+    rest: list[str] = []
+    words = iter(typed[len(before) :])
+    for word in words:
+        flag, given, value = word.partition("=")
+        if flag not in _GIVEN:
+            rest.append(word)
+            continue
+        value = value if given else next(words, "")
+        if not value or value.startswith("-"):
+            return ""
+        (first if flag in _GIVEN[:2] else last).append(value)
+    options = next((k for k, word in enumerate(rest) if word.startswith("-")), len(rest))
+    return " ".join([path_of(ctx), *map(shlex.quote, (*first, *rest[:options], *last, *rest[options:]))])
+
+
 def _are_trials(word: str) -> bool:
     from ..particles import FILE  # what it takes along is not needed for help
 
@@ -98,7 +121,8 @@ def _unknown_option(name: str, ctx: Any) -> Problem:
     takes = [_named(one) for one in ctx.command.params if one.param_type_name == "argument"]
     if name in _GIVEN and takes:
         why = f"{path} takes {', '.join(takes)}, with no option before"
-        return Problem(f"unknown option {name}", path, why, f"write {_example(ctx) or f'{path} --help'}")
+        fix = f"write {as_arguments(sys.argv[1:], ctx) or _example(ctx) or f'{path} --help'}"
+        return Problem(f"unknown option {name}", path, why, fix)
     why = f"{path} has {len(known)} options, and none is called that"
     elsewhere = [others for others, command in _commands(ctx.find_root().command) if name in _flags(command)]
     if elsewhere:

@@ -189,15 +189,18 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
         if motion.diverged:
             continue
         runs = [_predicted(bench, point, motion, objective) for _, point in rivals]
-        apart = [
-            (float(np.sqrt(np.nansum(((a - b) / bench.sigma) ** 2))), float(np.nanmax(np.hypot(*(a - b)[:, :2].T))))
-            for i, a in enumerate(runs)
-            for b in runs[:i]
-        ]
-        distance, positions = min(apart)
+        distance, positions = min(_apart(a, b, bench.sigma) for i, a in enumerate(runs) for b in runs[:i])
         if np.isfinite(distance) and (best is None or distance > best.distance):
             best = Suggestion(one.words, tuple(label for label, _ in rivals), distance, positions)
     return best
+
+
+def _apart(a: FloatArray, b: FloatArray, sigma: FloatArray) -> tuple[float, float]:
+    """Distance of two motions (n_samples, 6) in deviations of the noise, and the largest of their positions [m];
+    infinite where one of them ran away."""
+    with np.errstate(over="ignore"):
+        distance = np.sqrt(np.nansum(((a - b) / sigma) ** 2))
+    return float(distance), float(np.nanmax(np.hypot(*(a - b)[:, :2].T)))
 
 
 def _predicted(bench: Workbench, point: Point, motion: Motion, objective: Objective) -> FloatArray:

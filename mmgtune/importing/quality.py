@@ -137,10 +137,13 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
         if positions["rounding_x_m"] is not None and positions["rounding_y_m"] is not None:
             said += f"; rounding alone {positions['rounding_x_m']:.3g} and {positions['rounding_y_m']:.3g} m"
         lines.append(said)
-    doubt = f": {rudder['doubt']}" if rudder["doubt"] else ""
-    lines.append(
-        f"  rudder    turns the ship to its side: {rudder['side']}{doubt}, agreement {rudder['agreement']:+.2f}"
-    )
+    way = {
+        "starboard": "the ship turns to the side of it",
+        "port": "the ship turns away from it",
+        "in doubt": "this run alone does not tell by which side of it the ship turns",
+    }[rudder["side"]]
+    doubt = f" ({rudder['doubt']})" if rudder["doubt"] else ""
+    lines.append(f"  rudder    {way}{doubt}: agreement {rudder['agreement']:+.2f}")
     by_input = []
     for name, changes in q["controls"].items():
         unit = shown_in(INPUTS[name].unit)[0]

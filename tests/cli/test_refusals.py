@@ -57,7 +57,19 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         ),
         (
             ("validate", "-p", "suzaku", "-t", "suzaku"),
-            ("unknown option -p (mmgtune validate)", "with no option before", "fix: write mmgtune validate "),
+            ("unknown option -p (mmgtune validate)", "no option before", "fix: write mmgtune validate suzaku suzaku"),
+        ),
+        (
+            ("compare", "a.toml", "--trials=my logs", "--profile", "b.toml", "--restart", "100"),
+            (
+                "unknown option --trials",
+                "no option before",
+                "write mmgtune compare b.toml a.toml 'my logs' --restart 100",
+            ),
+        ),
+        (
+            ("check", "-p", "a.toml", "-t"),
+            ("unknown option -p", "no option before", "mmgtune check ship.toml trials/ "),
         ),
         (("report", "-p", "run"), ("unknown option -p", "takes argument RUN, with no option", "write mmgtune report ")),
         (("--zzz",), ("unknown option --zzz (mmgtune)", "options", "mmgtune --help lists them")),

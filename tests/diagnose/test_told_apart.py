@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
-from mmgtune.diagnose.separate import holds, menu
+from mmgtune.diagnose.separate import _apart, holds, menu
 from mmgtune.motions import simulate_trials as sailed
 from mmgtune.orders import run_manoeuvre
 from mmgtune.profile import load_profile, with_effects
@@ -106,3 +106,13 @@ def test_of_terms_alike_on_one_side_that_of_a_hull_of_two_like_sides_is_named(tm
     result = diagnose(load_profile("suzaku"), replace(trials, trials=kept), options)
     assert result.verdict in ("found", "not-separable"), result.sentence()
     assert list(result.to_dict()["causes"][0]["parameters"]) == ["Y_vabsv"]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("far", [1e200, np.inf])
+def test_a_motion_that_ran_away_is_infinitely_far_and_no_warning(far):
+    straight = np.zeros((3, 6))
+    away = straight.copy()
+    away[2] = far
+    assert _apart(straight, away, np.ones(6)) == (np.inf, pytest.approx(far * 2.0**0.5))
+    assert _apart(straight, straight + 1.0, np.ones(6))[0] == pytest.approx(18.0**0.5)
