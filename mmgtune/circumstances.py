@@ -48,16 +48,24 @@ def notes_on(
 
 def reversals(model: Model, trials: Sequence[Trial]) -> list[str]:
     """A sentence on trials in which a propeller turns astern that the ship's equations do not have so; else none."""
-    propeller = without_reverse(model.profile)
-    turned = [name for name in model.inputs if INPUTS[name].role == "propeller"]
-    ids = [one.whole for one in trials if any(np.mean(one.inputs([name]) < 0.0) > OFTEN for name in turned)]
-    if not ids or propeller is None:
+    ids = reversed_in(model, trials)
+    if not ids:
         return []
+    propeller = without_reverse(model.profile)
     told = (
-        f"the propeller turns astern in {listed(list(dict.fromkeys(ids)), 4)}, and the propeller '{propeller}' of "
+        f"the propeller turns astern in {listed(ids, 4)}, and the propeller '{propeller}' of "
         f"'{model.profile.id}' has no revolutions astern: what is off there may be that alone"
     )
     return [told]
+
+
+def reversed_in(model: Model, trials: Sequence[Trial]) -> list[str]:
+    """Ids of those trials."""
+    if without_reverse(model.profile) is None:
+        return []
+    turned = [name for name in model.inputs if INPUTS[name].role == "propeller"]
+    ids = [one.whole for one in trials if any(np.mean(one.inputs([name]) < 0.0) > OFTEN for name in turned)]
+    return list(dict.fromkeys(ids))
 
 
 def without_reverse(profile: ShipProfile) -> str | None:

@@ -31,7 +31,8 @@ class Diagnosis(Answer):
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
     jumped    largest jump of the position of each run that has any, and that was taken in parts there [m]
-    contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
+    contradicted what the logs say against each other, or what no model of the ship has, in a sentence; told first where
+              the answer is unexplained
     swell     that the ship swings in waves, and that nothing is left beside that; "" where it is not so
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
     leading      the first of the causes, where these are not believed together and it removes most alone; None else

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..circumstances import reversals
+from ..circumstances import reversals, reversed_in
 from ..errors import ProfileError, must_be_a
 from ..files import kept_in
 from ..fitting.extending import with_width
@@ -161,13 +161,16 @@ def _looked_at(
         f"{capital(jumps_in_words(jumped))}: runs are taken in parts there, which begin where their own samples say."
     )
     beside = [apart] if jumped else []
-    odd += [f"{capital(said)}." for said in reversals(bench.model, seen)]
+    astern = [f"{capital(said)}." for said in reversals(bench.model, seen)]
+    odd += astern
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     result = replace(result, warnings=warnings, jumped=jumped)
     if result.verdict != "unexplained" or choice is not None:
         return result
     if contradicted := _contradicted(whole):
         return replace(result, contradicted=contradicted)
+    if astern and len(reversed_in(bench.model, seen)) < len({trial.whole for trial in seen}):
+        return replace(result, contradicted=f"{astern[0]} Leave that out, and diagnose what else was sailed.")
     swinging, period = _swinging(whole, profile.L_pp)
     if not swinging:
         return result

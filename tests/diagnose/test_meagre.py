@@ -80,6 +80,17 @@ def test_a_rudder_of_the_wrong_sign_is_told_first():
     assert result.sentence().startswith("First put the logs right: in 3 of 3 trials the ship turns away from")
 
 
+def test_a_run_astern_that_the_model_does_not_have_is_told_first():
+    """A sum of wind, current and resistance was the headline, and the crash stop a note below."""
+    trials = load_trials("suzaku").trials
+    crash = replace(trials["turn_p35"], n=np.where(trials["turn_p35"].t > 60.0, -1.0, trials["turn_p35"].n))
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
+    said = diagnose("suzaku", [crash, trials["turn_m10"]], asked).sentence()
+    assert said.startswith("The propeller turns astern in turn_p35, and the propeller 'four-quadrant' of 'suzaku' has")
+    assert "Leave that out, and diagnose what else was sailed. Something is wrong" in said
+    assert "Leave that out" not in diagnose("suzaku", [crash], asked).sentence()  # there is nothing else
+
+
 @pytest.mark.parametrize(("off", "verdict"), [(0.0, "none"), (0.04, "unexplained")])
 def test_a_ship_that_swings_in_waves_is_told_first(off, verdict):
     """Nothing that is known explains it, and nothing has to, where nothing else is left; off: a slow error [m/s]."""
