@@ -16,7 +16,8 @@ from .intervals import covariance
 from .workbench import Point, Workbench
 
 FAR = 0.1
-"""Share of its pre-determined value from which a target that moved is spoken of."""
+"""Share of its pre-determined value from which a target that moved is spoken of; where that is from a formula no less
+than ships scatter about it."""
 
 IN_SERVICE = ("hull.R_0", "hull.X_0F")
 """What fouling changes while a ship sails: these are told of in sentences.  Other targets take up what coefficients
@@ -54,6 +55,7 @@ class Retuned:
     label     what it is, in words
     before    pre-determined value, in the profile's unit; after: re-tuned, with its standard error, None at a bound
     believed  standard deviation as a share of it of what has leeway; None of a target
+    scatter   standard deviation of ships about the formula it is from, as a share of it; 0 where that is not known
     """
 
     name: str
@@ -63,6 +65,7 @@ class Retuned:
     after: float
     stderr: float | None
     believed: float | None = None
+    scatter: float = 0.0
 
     @property
     def change(self) -> float | None:
@@ -82,7 +85,12 @@ class Retuned:
         if self.believed is not None:
             sure = abs(self.change) - SURE * self.deviation >= self.believed
             return sure and abs(self.change) >= BEYOND_LEEWAY * self.believed
-        return abs(self.change) - SURE * self.deviation >= FAR
+        return abs(self.change) - SURE * self.deviation >= self.spoken_of
+
+    @property
+    def spoken_of(self) -> float:
+        """Share of its pre-determined value from which its change is spoken of."""
+        return max(FAR, self.scatter)
 
     @property
     def words(self) -> str:
@@ -105,6 +113,7 @@ class Retuned:
             "stderr": self.stderr,
             "far": self.far,
             "target": self.believed is None,
+            "scatter": self.scatter or None,
         }
 
 
@@ -125,7 +134,9 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
         section, symbol = split_name(name)
         field = profile.sections[section].component.fields[symbol]
         believed = bench.options.leeway if name in loose else None
-        found.append(Retuned(name, field.label, field.unit, float(box.pre[k]), float(value), stderr, believed))
+        pre, about = float(box.pre[k]), profile.coefficient(name).scatter
+        scatter = about / abs(pre) if about and pre else 0.0
+        found.append(Retuned(name, field.label, field.unit, pre, float(value), stderr, believed, scatter))
     told = [one for one in found if one.believed is None or one.far]
     return sorted(told, key=_distance, reverse=True)
 
@@ -178,13 +189,14 @@ def besides(moved: Sequence[Retuned]) -> str:
     if told := _together(moved):
         return told
     others = [one for one in _targets(moved) if one.name not in IN_SERVICE]
-    n = sum(abs(one.after - one.before) >= FAR * abs(one.before) > 0.0 for one in others)
-    if not n:
+    off = [one for one in others if abs(one.after - one.before) >= one.spoken_of * abs(one.before) > 0.0]
+    if not off:
         return ""
-    they = "Another coefficient is" if n == 1 else f"{n} other coefficients are"
+    they = "Another coefficient is" if len(off) == 1 else f"{len(off)} other coefficients are"
+    beyond = " and further than ships scatter about the formulas" if any(one.scatter for one in off) else ""
     return (
-        f"{they} a tenth or more off too, which may only stand for what others are off by: of all that is re-tuned "
-        "together, what fouling changes alone is told apart."
+        f"{they} a tenth or more off too{beyond}, which may only stand for what others are off by: of all that is "
+        "re-tuned together, what fouling changes alone is told apart."
     )
 
 

@@ -1,6 +1,7 @@
 """What re-tuning alone changed is told: a hull that was fouled is no hidden cause, and not nothing either."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -28,6 +29,18 @@ def moved(after, stderr, before=0.5):
 def test_far_is_surely_more_than_a_tenth(after, stderr, far):
     assert moved(after, stderr).far == far
     assert moved(-after, stderr, before=-0.5).far == far  # of a negative coefficient alike
+
+
+def test_of_a_formula_far_is_more_than_ships_scatter_about_it():
+    """Of a ship whose profile is worked out from main dimensions, 24 coefficients were a tenth off, as they are."""
+    usual, unusual = (replace(moved(after, 0.01), scatter=0.3) for after in (0.6, 0.7))
+    assert (usual.far, unusual.far) == (False, True)
+    assert moved(0.6, 0.01).far
+    others = [Retuned(f"hull.Y_{k}", "force", "1", 1.0, 1.0 + 0.1 * k, 0.01, scatter=0.25) for k in (1, 2, 3)]
+    assert besides([unusual, *others]).startswith(
+        "Another coefficient is a tenth or more off too and further than ships scatter about the formulas, which may"
+    )
+    assert besides([unusual, *others[:2]]) == ""
 
 
 def test_a_change_from_nothing_has_no_share():
