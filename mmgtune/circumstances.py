@@ -60,7 +60,7 @@ def reversals(model: Model, trials: Sequence[Trial]) -> list[str]:
 
 
 def reversed_in(model: Model, trials: Sequence[Trial]) -> list[str]:
-    """Ids of those trials."""
+    """Ids of trials in which a propeller turns astern that the ship's equations do not have so."""
     if without_reverse(model.profile) is None:
         return []
     turned = [name for name in model.inputs if INPUTS[name].role == "propeller"]

@@ -29,7 +29,7 @@ HARDLY_MORE = 0.05
 """Share of the residuals beyond their noise that any may leave."""
 
 LEAST_SPREAD = 0.01
-"""Smallest spread of such values in a refit, in typical sizes."""
+"""Smallest spread of values that differ between runs in a refit, in typical sizes."""
 
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""

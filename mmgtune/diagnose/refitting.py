@@ -17,7 +17,8 @@ from .shortlist import Shortlist, akin
 from .workbench import Point, Workbench
 
 FAR_LESS = 1.0 / 3.0
-"""Share of the error left by the best value for all that such values may leave, where much is left."""
+"""Share of the error left by the best value for all runs that values which differ between them may leave, where much is
+left."""
 
 MOST_STEPS, ALL_STEPS = 10, 30
 """Further steps of a refit where much is left, and of the best few."""

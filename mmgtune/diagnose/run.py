@@ -157,10 +157,8 @@ def _looked_at(
     result, found = judge.answer(found, brought)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
-    apart = (
-        f"{capital(jumps_in_words(jumped))}: runs are taken in parts there, which begin where their own samples say."
-    )
-    beside = [apart] if jumped else []
+    told = capital(jumps_in_words(jumped))
+    beside = [f"{told}: runs are taken in parts there, which begin where their own samples say."] if told else []
     astern = [f"{capital(said)}." for said in reversals(bench.model, seen)]
     odd += astern
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
