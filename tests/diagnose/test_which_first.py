@@ -42,8 +42,9 @@ def refit(chi2, by, cost):
     ],
 )
 def test_values_that_differ_stand_first_where_they_leave_far_less(differing, alike, first):
-    look = SimpleNamespace(strong=True, bench=SimpleNamespace(problem=SimpleNamespace(n_residuals=N_RESIDUALS)))
-    ordered = Refitting._ordered(look, [refit(alike, "", 20.0), refit(differing, "trial", 60.0)])
+    bench = SimpleNamespace(problem=SimpleNamespace(n_residuals=N_RESIDUALS))
+    refitting = Refitting(SimpleNamespace(strong=True, bench=bench))
+    ordered = refitting._ordered([refit(alike, "", 20.0), refit(differing, "trial", 60.0)])
     assert ordered[0].hypothesis.by == first
 
 
