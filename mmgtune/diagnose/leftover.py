@@ -132,14 +132,18 @@ class Leftover(Brief):
 
     @property
     def alone(self) -> str:
-        """Of ``SENSORS`` the one in which alone more than slow noise is left; "" where others err too, or none does."""
+        """Of ``SENSORS`` the one in which alone more than slow noise is left; "" where others err too, or none does.
+
+        Not the positions where a velocity is off as well, be it slowly: they are where it led.
+        """
         left = {name: excess - self.at_most.get(name, 0.0) for name, excess in self.channels.items()}
         beyond = {name for name, excess in left.items() if excess > NOTICED}
         whole = sum(max(excess, 0.0) for excess in left.values())
         for own, sensor in SENSORS.items():
             there = sum(max(left.get(name, 0.0), 0.0) for name in own)
             clear = any(left.get(name, 0.0) > CLEARLY for name in own)
-            if clear and there > (MOST if beyond.issubset(own) else NEARLY_ALL) * whole:
+            led = sensor == POSITION and any(self.channels.get(name, 0.0) > CLEARLY for name in ("u", "v_m"))
+            if clear and not led and there > (MOST if beyond.issubset(own) else NEARLY_ALL) * whole:
                 return sensor
         return ""
 
