@@ -18,7 +18,11 @@ from ..units import with_point
 Mistyped: type[Exception] = next(one for one in typer.BadParameter.__mro__ if one.__name__ == "UsageError")
 """What Typer raises; releases keep it at different places."""
 
-_SPOKEN = {"help": "write mmgtune --help, or mmgtune fit --help of a command", "version": "write mmgtune --version"}
+_SPOKEN = {
+    "help": "write mmgtune --help, or mmgtune fit --help of a command",
+    "version": "write mmgtune --version",
+    "effects": "write mmgtune diagnose -p SHIP -t TRIALS --dry-run, which lists what would be looked for",
+}
 """What to write for commands that other programs have."""
 
 _GIVEN = ("-p", "--profile", "-t", "--trials")

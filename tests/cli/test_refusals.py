@@ -127,6 +127,7 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
             ("simulate", "run/particles.parquet"),
             ("is one word too many", "options alone", "write mmgtune simulate -p run/particles.parquet"),
         ),
+        (("effects",), ("unknown command 'effects' (mmgtune)", "", "--dry-run, which lists what would be")),
         (("learn", "foo"), ("unknown command 'foo' (mmgtune learn)", "known here: ", "write one of these")),
     ],
     ids=lambda value: "-".join(value) if " " not in value[-1] else "",
