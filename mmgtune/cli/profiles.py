@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 import textwrap
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, ProfileError
 from ..options import EstimateOptions
 from ..units import DIMENSIONLESS
 from . import common as c
@@ -182,6 +183,7 @@ def new(
     from ..files import refuse_existing, write_text
     from ..units import KNOT
 
+    _keep_particulars(file)
     refuse_existing([file], force)
     asked = particulars == "particulars" and not Path(particulars).exists()
     ship = estimate(_asked() if asked else read_particulars(particulars), options)
@@ -197,6 +199,19 @@ def new(
     speed, n = approach.speed / KNOT, approach.n * 60.0
     c.show(f"approach at {speed:.4g} kn with {n:.4g} rpm")
     c.say_doubts(ship.doubts())
+
+
+def _keep_particulars(file: Path) -> None:
+    """Raises OptionError where a file of particulars was given as the profile to write, which would take its place."""
+    from ..estimating import read_particulars
+
+    try:
+        read_particulars(file)
+    except ProfileError:
+        return
+    fix = f"write mmgtune profile new my_ship.toml --from {shlex.quote(str(file))}"
+    why = "the profile that is made of them would take their place"
+    raise OptionError(Problem(f"{file.name} holds particulars, and is no place for a profile", str(file), why, fix))
 
 
 @app.command("compare")

@@ -7,6 +7,7 @@ import pytest
 
 from mmgtune.cli import profiles
 from mmgtune.profile import load_profile
+from mmgtune.resources import particulars
 from tests.command import run, typed
 
 ANSWERS = ("M.V. Ask Me", "83 m", "13.5 m", "3.8 m", "0.737", "12 kn", "", "", "", "", "")
@@ -117,3 +118,15 @@ def test_two_profiles_compared(tmp_path):
     assert (tmp_path / "both" / "report.html").is_file()
     again = run("profile", "compare", "suzaku", "suzaku_fam", "--out", "both", cwd=tmp_path)
     assert again.code == 2
+
+
+@pytest.mark.parametrize("more", [(), ("--force",), ("--from", "suzaku", "--force")])
+def test_particulars_are_no_place_for_the_profile_made_of_them(tmp_path, more):
+    """They were to be replaced by --force, it said."""
+    before = (particulars() / "suzaku.toml").read_text()
+    (tmp_path / "my ship.toml").write_text(before)
+    ended = run("profile", "new", "my ship.toml", *more, cwd=tmp_path)
+    assert ended.code == 2
+    assert "my ship.toml holds particulars" in ended.err
+    assert "fix: write mmgtune profile new my_ship.toml --from 'my ship.toml'" in ended.err
+    assert (tmp_path / "my ship.toml").read_text() == before
