@@ -16,10 +16,12 @@ from ..options.scoring import WINDOW
 from ..phrases import listed
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial
+from .belief import MOSTLY
 from .by_run import ByRun
 from .causes import Candidate, Cause, Trace
 from .contributions import Aside, Contribution, contributions, with_only
 from .detecting import detectability
+from .doubted import Doubted, Leading
 from .gain import J_of, held_out
 from .gathering import error_of, evidence
 from .hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
@@ -34,7 +36,6 @@ from .retuned import retuned, unlike_any
 from .search import Found, Step, rivals_of, step_of
 from .separate import Suggestion, suggest
 from .unseen import Unseen
-from .verdict import MOSTLY, Doubted, Leading
 from .voyages import Choice
 from .workbench import Point, Workbench
 

@@ -298,24 +298,11 @@ def linearise(
 
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
-    free = zip(point.names, point.unit, strict=True)
-    inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in free], dtype=bool)
-    loose = inside & np.array([name in bench.believed.deviations for name in point.names], dtype=bool)
-    own = [name for name, is_loose in zip(point.names, loose, strict=True) if is_loose]
-    inwards_from = _from_bounds(bench, point, apart, left[:, 0], left[:, 1 : 1 + n_free])
-    moved_by = left[:, 1 : 1 + n_free][:, loose] / np.array([unit_of(bench, name) for name in own])
-    left[:, 0] -= moved_by @ (point.unit[loose] - bench.null(own))  # where nothing with leeway has moved
     plain = {
         base: np.sum(left[:, [1 + i for i, name in enumerate(names) if base_of(name) == base]], axis=1)
         for base in dict.fromkeys(varying)
     }
-    deviation = np.array([bench.believed.deviations[name] for name in own])
-    by_tuning, moved_by = left[:, 1 : 1 + n_free][:, inside & ~loose], moved_by * deviation
-    if apart:
-        widths = [unit_of(bench, name) for name in np.array(point.names)[inside & ~loose].tolist()]
-        moved_by = np.column_stack([moved_by, BOXED * by_tuning / np.array(widths), inwards_from])
-        by_tuning = by_tuning[:, :0]
-    tuned = Tuned.by(by_tuning, moved_by)
+    tuned, left[:, 0] = _tuning(bench, point, apart, left[:, 0], left[:, 1 : 1 + n_free])
     left = tuned.out_of(left)
     chosen = (*apart, *wanted)
     at_chosen = [1 + names.index(name) for name in chosen]
@@ -352,6 +339,29 @@ def linearise(
         retuned=retuned,
         fitted=fitted,
     )
+
+
+def _tuning(
+    bench: Workbench, point: Point, apart: Sequence[str], residual: FloatArray, columns: FloatArray
+) -> tuple[Tuned, FloatArray]:
+    """What re-tuning takes out of columns, and the residual (n_rows,) where nothing with leeway has moved.
+
+    residual, columns  (n_rows,) and (n_rows, n_free) for a step of each name, initial states taken out
+    """
+    free = zip(point.names, point.unit, strict=True)
+    inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in free], dtype=bool)
+    loose = inside & np.array([name in bench.believed.deviations for name in point.names], dtype=bool)
+    own = [name for name, is_loose in zip(point.names, loose, strict=True) if is_loose]
+    inwards_from = _from_bounds(bench, point, apart, residual, columns)
+    by_leeway = columns[:, loose] / np.array([unit_of(bench, name) for name in own])
+    unmoved = residual - by_leeway @ (point.unit[loose] - bench.null(own))
+    by_leeway = by_leeway * np.array([bench.believed.deviations[name] for name in own])
+    by_tuning = columns[:, inside & ~loose]
+    if apart:
+        widths = [unit_of(bench, name) for name in np.array(point.names)[inside & ~loose].tolist()]
+        by_leeway = np.column_stack([by_leeway, BOXED * by_tuning / np.array(widths), inwards_from])
+        by_tuning = by_tuning[:, :0]
+    return Tuned.by(by_tuning, by_leeway), unmoved
 
 
 def _from_bounds(

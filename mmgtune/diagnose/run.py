@@ -30,6 +30,7 @@ from ..trial import Trial, TrialSet, VoyageSet, oddities
 from ..trial.schema import MOTION
 from ..trial.set_checks import turn_away
 from ..trial.swell import period_of, swings
+from .belief import TOLD
 from .contributions import removed_by, set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
@@ -42,7 +43,6 @@ from .result import Diagnosis
 from .search import search
 from .together import Together
 from .unseen import Unseen
-from .verdict import TOLD
 from .voyages import Choice, looked_at, with_hull_held
 from .workbench import make_workbench
 

@@ -6,12 +6,13 @@ import math
 from typing import NamedTuple
 
 from ..phrases import capital, in_percent, listed
+from .belief import TOLD
 from .gain import MOST
 from .jumped import in_words as jumps_in_words
 from .leftover import change_in_words, in_words
 from .retuned import besides, far_off, weighed
 from .retuned import in_words as moved_in_words
-from .verdict import TOLD, Answer
+from .verdict import Answer
 
 IMITATED = 0.5
 """Share of the error removed below which it is said that a hull a little off is part of what it is counted from."""

@@ -15,6 +15,7 @@ from mmgtune.diagnose import contributions as contributed
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause, Trace
 from mmgtune.diagnose.contributions import Contribution, removed_by, set_aside, squares, takes_the_rest
+from mmgtune.diagnose.doubted import Leading
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.intervals import Estimate
@@ -24,7 +25,6 @@ from mmgtune.diagnose.noise import ChannelNoise
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Unseen
-from mmgtune.diagnose.verdict import Leading
 from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.effects import Visited, effects, find_effect
 from mmgtune.motions import simulate_trials
