@@ -24,9 +24,20 @@ def print_step(values: FloatArray) -> tuple[FloatArray, int]:
         return out, 0
     size = np.where(printed == 0.0, np.min(np.abs(printed[printed != 0.0]), initial=1.0), np.abs(printed))
     step = 10.0 ** (np.floor(np.log10(size)) + 1 - digits)
-    # Just below a power of ten steps are finer than above it; near zero they are far finer than matters.
-    out[known] = np.maximum(step, 1e-3 * step.max())
+    # Just below a power of ten steps are finer than above it, unless all numbers have as many decimals; near zero they
+    # are far finer than matters.
+    out[known] = np.maximum(step, max(1e-3 * step.max(), _same_decimals(printed, step.max())))
     return out, digits
+
+
+def _same_decimals(printed: FloatArray, coarsest: float) -> float:
+    """The largest power of ten, up to ``coarsest``, that all numbers are whole multiples of; 0 where there is none down
+    to a millionth of it."""
+    for finer in range(7):
+        step = coarsest / 10.0**finer
+        if np.allclose(np.round(printed / step) * step, printed, rtol=1e-9, atol=1e-6 * step):
+            return float(step)
+    return 0.0
 
 
 def within_digits(t: FloatArray, values: FloatArray) -> tuple[FloatArray, int, FloatArray]:

@@ -21,7 +21,8 @@ from ..units import DEG
 from .cutting import standing
 from .gridding import FEWEST
 from .mapping import LogMap
-from .record import Record
+from .record import MORE_DIGITS, Coarse, Record
+from .yaw import integral_of
 
 DRIFTS = 2.0 * DEG
 """Difference of heading and integrated yaw rate [rad] over a run up to which nothing is said of a steady drift."""
@@ -73,11 +74,21 @@ def doubts(trial: Trial, record: Record, log_map: LogMap) -> list[Finding]:
     if not log_map.antenna and not log_map.shifted and record.has_velocities:
         found += one_axis(trial, where, log_map)
     found += by_hand(trial, where, log_map)
-    found += [
-        Finding("warning", f"'{name}' is {coarse.words}", where, coarse.why, coarse.fix(name))
-        for name, coarse in record.coarse.items()
-    ]
+    found += [_few_digits(name, coarse, record, log_map) for name, coarse in record.coarse.items()]
     return found
+
+
+def _few_digits(name: str, coarse: Coarse, record: Record, log_map: LogMap) -> Finding:
+    """A column printed with few digits; a heading is only to be recovered from a yaw rate that is good enough."""
+    why, fix = coarse.why, coarse.fix(name)
+    heading, rate = record.series.get("psi"), record.series.get("r")
+    if name == "psi" and heading is not None and rate is not None:
+        integral = integral_of(heading, rate, np.full(len(heading.t), coarse.size), log_map.gap)
+        if integral is not None and integral.wanders:
+            adds_up = f"its noise would add up to {integral.wander / DEG:.2g} deg rms"
+            why += f"; the rate gives no better one: {adds_up}"
+            fix = MORE_DIGITS
+    return Finding("warning", f"'{name}' is {coarse.words}", where=record.path.name, why=why, fix=fix)
 
 
 def gyro_drift(trial: Trial, where: str) -> list[Finding]:

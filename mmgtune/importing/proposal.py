@@ -19,12 +19,14 @@ from .doubts import shifted_lever
 from .forms import form_of
 from .importer import Imported, import_logs, paths_of
 from .mapping import ASKS, LogMap
+from .proposing.find_rest import RECOVERED
 from .proposing.finder import MOST_LOGS, Finder
 from .proposing.finding import found_in
 from .proposing.guess import Guess
 from .proposing.sampling import Sample, sample_of
 from .proposing.writing import guess_dict, table_of_guesses, toml_of_map
 from .reading_map import parse_map
+from .yaw import WANDERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,13 +172,36 @@ def _tried(proposal: Proposal, finder: Finder) -> Proposal:
     recovering = [name for name, guess in finder.guesses.items() if "recover" in guess.keys]
     if problems and recovering and any("recovered" in one.what for one in problems):
         for name in recovering:
-            keys = {key: value for key, value in finder.guesses[name].keys.items() if key != "recover"}
-            finder.guesses[name] = replace(finder.guesses[name], keys=keys)
+            _leave_printed(finder, name, "no curve through its steps follows the rest of the log")
+        proposal = _made(finder, proposal.logs, proposal.left)
+        found, problems = _imported(proposal)
+    if found is not None and "psi" in recovering and (by := _wander(found)) > 0.0:
+        _leave_printed(finder, "psi", f"the noise of the yaw rate would add up to {by:.2g} deg rms")
         proposal = _made(finder, proposal.logs, proposal.left)
         found, problems = _imported(proposal)
     if found is not None:
         proposal, found = _with_findings(proposal, finder, found)
     return _told(proposal, found, problems)
+
+
+def _leave_printed(finder: Finder, name: str, why: str) -> None:
+    """Take back that a column printed with few digits is recovered."""
+    guess = finder.guesses[name]
+    keys = {key: value for key, value in guess.keys.items() if key != "recover"}
+    evidence = tuple(one.replace(RECOVERED, f", and left so: {why}") for one in guess.evidence)
+    finder.guesses[name] = replace(guess, keys=keys, evidence=evidence)
+
+
+def _wander(found: Imported) -> float:
+    """What the noise of yaw rates adds up to in headings recovered from them, rms over all trials [deg]; 0 where it is
+    little beside what rounding made of those printed, or none was recovered."""
+    recovered = [one for quality in found.quality if (one := quality["yaw"]["recovered"]) is not None]
+    if not recovered:
+        return 0.0
+    wander, rounding = (
+        float(np.sqrt(np.mean([one[key] ** 2 for one in recovered]))) for key in ("wander_deg", "rounding_deg")
+    )
+    return wander if wander > WANDERS * rounding else 0.0
 
 
 def _told(proposal: Proposal, found: Imported | None, problems: tuple[Problem, ...]) -> Proposal:

@@ -64,6 +64,7 @@ def quality_of(
             "largest_difference_deg": turned.miss / DEG,
             "ratio": turned.ratio if np.std(turned.yaw) > 0.0 else None,
             "correlation": turned.correlation,
+            "recovered": _recovered(record),
         },
         "positions": {
             "ship_axes": _or_none(misfits.get("")),
@@ -157,6 +158,13 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
             given.add((f["why"], f["fix"]))
             lines.append("; ".join([f"  {f['severity']}   {f['what']}", *filter(None, more)]))
     return "\n".join(lines)
+
+
+def _recovered(record: Record) -> dict[str, float] | None:
+    if record.recovered is None:
+        return None
+    missed, rounding, wander = record.recovered
+    return {"missed_deg": missed / DEG, "rounding_deg": rounding / DEG, "wander_deg": wander / DEG}
 
 
 def _named(finding: Finding, record: Record, log_map: LogMap) -> Finding:

@@ -25,6 +25,7 @@ PAIRS = (("latitude", "longitude"), ("x", "y"), ("u", "v"))
 FEW = 4
 """Significant digits up to which a column is looked at as to whether they suffice."""
 FEWEST_PRINTED = 40
+MORE_DIGITS = "log it with more digits"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,12 +57,18 @@ class Series:
 
 @dataclass(frozen=True)
 class Coarse:
-    """A column printed with few digits: how many, the largest step of the last in ``unit``, the share of repeats."""
+    """A column printed with few digits.
+
+    digits   how many
+    step     the largest step of the last, in ``unit``; size: the same in the program's unit
+    repeats  share of values that are the one before
+    """
 
     digits: int
     step: float
     unit: str
     repeats: float
+    size: float
 
     @property
     def words(self) -> str:
@@ -74,7 +81,7 @@ class Coarse:
     def fix(self, name: str) -> str:
         """What the map can say."""
         way = "yaw-rate" if name == "psi" else "print-resolution"
-        return f'say recover = "{way}" in [columns.{name}], or log it with more digits'
+        return f'say recover = "{way}" in [columns.{name}], or {MORE_DIGITS}'
 
 
 @dataclass(eq=False)
@@ -85,6 +92,8 @@ class Record:
     spikes   number of samples taken out, by quantity
     notes    what was done, in sentences
     coarse   columns printed with few digits that the map does not recover, by quantity
+    recovered  of a heading that was, rms [rad]: by which the integral of the yaw rate misses it as printed, what
+             rounding alone would make of that, and what the noise of the rate adds up to; None of any other
     """
 
     path: Path
@@ -92,6 +101,7 @@ class Record:
     spikes: dict[str, int] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     coarse: dict[str, Coarse] = field(default_factory=dict)
+    recovered: tuple[float, float, float] | None = None
 
     @property
     def has_velocities(self) -> bool:
@@ -177,8 +187,9 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
         except LogError as error:
             problems += error.problems
             continue
+        factor = units.factors(known_quantity(name).unit)[unit] * abs(source.scale)
         if not source.recover:
-            if name in ("x", "y", "psi") and (few := few_digits(printed, unit)) is not None:
+            if name in ("x", "y", "psi") and (few := few_digits(printed, unit, factor)) is not None:
                 coarse[name] = few
             series[name] = Series(t[rows], converted(name, printed, source, unit))
             continue
@@ -194,7 +205,6 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
             continue
         coarsest = f"{np.nanmax(steps):.3g} {unit}"
         notes.append(f"{name} is printed with {digits} significant digits, in steps of up to {coarsest}{how}")
-        factor = units.factors(known_quantity(name).unit)[unit] * abs(source.scale)
         as_printed = converted(name, printed, source, unit)
         series[name] = Series(
             t[rows], converted(name, recovered, source, unit) if how else as_printed, as_printed, steps * factor
@@ -218,8 +228,11 @@ def as_logged(series: Mapping[str, Series]) -> dict[str, Series]:
     return found
 
 
-def few_digits(printed: FloatArray, unit: str) -> Coarse | None:
-    """A column (n_samples,) that moves by less than its print step from row to row; None where digits suffice."""
+def few_digits(printed: FloatArray, unit: str, factor: float) -> Coarse | None:
+    """A column (n_samples,) that moves by less than its print step from row to row; None where digits suffice.
+
+    factor  from its unit to the program's
+    """
     values = printed[np.isfinite(printed)]
     if len(values) < FEWEST_PRINTED or np.ptp(values) == 0.0:
         return None
@@ -230,7 +243,8 @@ def few_digits(printed: FloatArray, unit: str) -> Coarse | None:
     # What stands still repeats as well, however finely it is printed.
     moving = np.abs(values - np.median(values)) > 0.05 * np.ptp(values)
     again = float(np.mean((np.diff(values) == 0.0)[moving[1:]])) if moving[1:].any() else 0.0
-    return Coarse(digits, float(np.nanmax(steps)), unit, again) if again >= 0.3 else None
+    step = float(np.nanmax(steps))
+    return Coarse(digits, step, unit, again, step * factor) if again >= 0.3 else None
 
 
 def possible(name: str, values: FloatArray, source: Source, unit: str, table: Table, notes: list[str]) -> FloatArray:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_smoothing_spline
 
-from mmgtune.importing.digits import _Smoothing, within_digits
+from mmgtune.importing.digits import _Smoothing, print_step, within_digits
 
 
 @pytest.mark.parametrize("lam", [1e-6, 1e-2, 1.0, 1e2, 1e4])
@@ -33,3 +33,13 @@ def test_samples_that_all_but_coincide_are_smoothed_as_far_as_that_can_be_told(g
     printed = np.round(5.3 + 3.0 * np.sin(t / 40.0), 2)
     found, _, _ = within_digits(t, printed)
     assert np.mean(np.abs(found - printed) <= 0.005 + 1e-9) > 0.99
+
+
+def test_the_step_of_numbers_with_as_many_decimals_is_one():
+    """Headings in whole degrees have three digits from 100 on and two below it, yet steps of a degree everywhere."""
+    heading = np.round(np.linspace(5.0, 330.0, 60))
+    steps, digits = print_step(heading)
+    assert digits == 3
+    assert steps == pytest.approx(1.0)
+    of_three_digits = np.array([float(f"{value:.2e}") for value in np.linspace(1.234, 330.0, 200)])
+    assert sorted(set(print_step(of_three_digits)[0])) == pytest.approx([0.01, 0.1, 1.0])

@@ -100,6 +100,27 @@ def test_a_course_that_is_taken_for_the_heading_is_said_to_be(tmp_path):
     assert any("no heading is found: 'COG [deg]'" in note for note in proposal.notes)
 
 
+@pytest.mark.parametrize(("noise", "recovers"), [(0.0, True), (1.2, False)])  # deg/min
+def test_a_heading_in_whole_degrees_is_left_as_printed_beside_a_noisy_yaw_rate(tmp_path, noise, recovers):
+    """What the noise of a rate adds up to is slow, and was taken for motion; digits are noise like any other."""
+    columns = logged(turn())
+    columns["heading"] = np.round(columns["heading"])
+    columns["rate"] = columns["rate"] + noise * np.random.default_rng(3).standard_normal(len(columns["rate"]))
+    found = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert ("recover" in found.guesses["psi"].keys) is recovers
+    evidence = found.guesses["psi"].evidence[-1]
+    assert ("recovered" in evidence) is recovers
+    assert ("the noise of the yaw rate would add up to" in evidence) is not recovers
+    (quality,) = import_logs(found.logs, found.map(), tmp_path, dry_run=True).quality
+    fixes = [one["fix"] for one in quality["findings"] if "'psi' is printed with" in one["what"]]
+    if recovers:
+        assert not fixes
+        assert quality["yaw"]["recovered"]["wander_deg"] < 0.1 * quality["yaw"]["recovered"]["rounding_deg"]
+    else:
+        assert all("recover" not in fix for fix in fixes)
+        assert quality["yaw"]["recovered"] is None
+
+
 def test_a_wrong_map_makes_other_trials(tmp_path):
     rng = np.random.default_rng(3)
     out = disguised(rng, bundled_logs()[:1], tmp_path)
