@@ -35,9 +35,13 @@ def pair_in(texts: Any) -> dict[str, FloatArray]:
     found = {name: np.full(len(texts), np.nan) for name in MOST}
     for pattern in _SIDED:
         parts = short.str.extract(pattern)
+        if parts[0].isna().all():
+            continue
         _fill(found, degrees(parts[0].str.strip(" ,;/|")), degrees(parts[1].str.strip(" ,;/|")))
     for pattern, order in ((_PLAIN[0], (0, 1)), (_PLAIN[1], (0, 1)), (_POINT, (1, 0))):
         parts = short.str.extract(pattern)
+        if parts[0].isna().all():
+            continue
         latitude, longitude = (numbers_in(parts[k], ",", "none") for k in order)
         _fill(found, latitude, longitude)
     return found

@@ -51,6 +51,8 @@ def _divide_pairs(find: Finder) -> None:
         columns = [one.texts[k] for one in find.samples]
         if any(str(one.dtype) != "string" for one in columns) or find.said[k] in (TIME, DATE):
             continue
+        if all(np.isfinite(one.numbers[k]).mean() > 0.5 for one in find.samples):  # a number is no pair
+            continue
         halves = [list(pair_in(one).values()) for one in columns]
         told = sum(int(np.isfinite(latitude).sum()) for latitude, _ in halves)
         if told < 10 or told < 0.9 * sum(int(one.notna().sum()) for one in columns):
