@@ -33,12 +33,16 @@ def degrees(texts: Any) -> FloatArray:
     negative.  "O", which is east to some and west to others, is no side.
     """
     short = texts.str.slice(0, 40)
-    parts = short.str.extract(ANGLE)
     plain = short.str.fullmatch(r"[-+]?[\d.,]*").fillna(True).to_numpy(dtype=bool)
+    if plain.all():
+        return np.full(len(texts), np.nan)
+    parts = short.str.extract(ANGLE)
     side = (parts[0].fillna("") + parts[5].fillna("")).str.upper()
     whole, minutes, seconds = (numbers_in(parts[k], ",") for k in (2, 3, 4))
     for pattern in (_COMPACT, _DASHED):
         found = short.str.extract(pattern)
+        if found[1].isna().all():
+            continue
         both = (found[0].fillna("") + found[3].fillna("")).str.upper()
         in_one = (both.str.len() == 1).to_numpy(dtype=bool, na_value=False) & found[1].notna().to_numpy(dtype=bool)
         side = side.where(~in_one, both)

@@ -6,6 +6,7 @@ import itertools
 import re
 from collections.abc import Collection
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from ..table import MISSING
 from .finder import Finder
 from .sampling import Sample
 from .words import DATE, TIME
+
+FEW = 30
+"""Cells of a column that are looked at first: where none is a position, hardly any is."""
 
 _NAMES = {"minutes": re.compile(r"min(ute)?s?\b|minut|'|′"), "seconds": re.compile(r"sec(ond)?s?\b|sek|\"|″|''")}
 _UNITS = {"minutes": ("min",), "seconds": ("s",)}
@@ -51,7 +55,7 @@ def _divide_pairs(find: Finder) -> None:
         columns = [one.texts[k] for one in find.samples]
         if any(str(one.dtype) != "string" for one in columns) or find.said[k] in (TIME, DATE):
             continue
-        if all(np.isfinite(one.numbers[k]).mean() > 0.5 for one in find.samples):  # a number is no pair
+        if not any(np.isfinite(pair_in(_few(one))["latitude"]).any() for one in columns):
             continue
         halves = [list(pair_in(one).values()) for one in columns]
         told = sum(int(np.isfinite(latitude).sum()) for latitude, _ in halves)
@@ -63,6 +67,12 @@ def _divide_pairs(find: Finder) -> None:
         find.said.append("longitude")
         find.units_said.append("")
         return
+
+
+def _few(texts: Any) -> Any:
+    """Some of the cells of a pandas column that hold something, from all over it."""
+    known = texts.dropna()
+    return known.iloc[:: max(1, len(known) // FEW)]
 
 
 def _read_ddmm(find: Finder) -> None:
