@@ -62,7 +62,9 @@ from others, and none of which has values of each run: a third that brings less 
 
 FAINT = 0.1
 """Fall of chi-squared per residual that a sum of causes must bring: of less, sums that stand for another cause bring as
-much."""
+much, and so do values of each run."""
+
+NEXT_TO_NOTHING = "what it removes of the error where nothing was fitted may be next to nothing"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -91,7 +93,7 @@ class Belief:
         """Why causes are not believed, in words; "" where they are.
 
         A single one is doubted only where it was found once trials kept for testing were looked at too, and where its
-        size may be none and it removes little.
+        size may be none, or is that of each run beside noise, and it removes little.
 
         An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
         """
@@ -106,7 +108,10 @@ class Belief:
         not_told = f"how large {listed(unsized)} would be is not told, if anything at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
+        bends = any(cause.runs for cause in self.causes)
         if len(brought) < 2:
+            if bends and self._faint and self.gain.share_removed < AT_ALL:
+                return NEXT_TO_NOTHING
             return not_told if self.gain.share_removed < TOLD else ""
         terms = [one for one in brought if not one.apart]
         if self.more or len(terms) >= TOO_MANY:
@@ -115,7 +120,6 @@ class Belief:
             return "all that they remove is little beside noise, and other sums would"
         if self.rest > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
-        bends = any(cause.runs for cause in self.causes)
         if len(terms) > 2 and self.groups and (bends or min(one.seen for one in terms) < OF_MANY):
             return "not all of them can be told from others"
         several = sum(bool(cause.runs) for cause in self.causes) > 1
@@ -123,8 +127,8 @@ class Belief:
             return "more than one of them differs from run to run"
         if self.gain.share_removed < TOLD:
             return "it removes little of the error where nothing was fitted"
-        if self.gain.surely_removed < AT_ALL and any(cause.runs for cause in self.causes):
-            return "what it removes of the error where nothing was fitted may be next to nothing"
+        if self.gain.surely_removed < AT_ALL and bends:
+            return NEXT_TO_NOTHING
         if not_told:
             return not_told
         if sum(one.seen for one in brought) < NEEDED and (self.leftover.structured or not self.explains_all):
@@ -177,9 +181,10 @@ class Belief:
 
     @property
     def is_chance(self) -> bool:
-        """Whether a single cause is not believed whose size may be none, and that removes little, or a sum of causes
-        that removes little beside noise."""
-        nothing = not self.causes[0].sized if len(self.contributions) == 1 else self._faint
+        """Whether a single cause is not believed whose size may be none, and that removes little, or a sum of causes,
+        or values of each run, that remove little beside noise."""
+        one_size = len(self.contributions) == 1 and not self.causes[0].runs
+        nothing = not self.causes[0].sized if one_size else self._faint
         return nothing and bool(self.unclear)
 
     @property

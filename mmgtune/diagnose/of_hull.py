@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from ..effects import CoefficientsEffect, FactorsEffect, ForceEffect, LagEffect
@@ -26,7 +27,8 @@ def explained_by_hull(bench: Workbench, cause: Hypothesis, fewer: Point, chi2: f
     """
     of_ship = isinstance(cause.effect, CoefficientsEffect | FactorsEffect | ForceEffect | LagEffect)
     fall = fewer.chi2 - chi2
-    if not of_ship or cause.by or cause.instead or not bench.believed.leeway or not fall > 0.0:
+    told = of_ship and not (cause.by or cause.instead) and bench.believed.leeway
+    if not told or not 0.0 < fall < math.inf:  # without a cause a run may be lost
         return 0.0
     further = {name: FURTHER * deviation for name, deviation in bench.believed.leeway.items()}
     looser = replace(bench, believed=replace(bench.believed, leeway=further))

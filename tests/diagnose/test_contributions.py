@@ -465,6 +465,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, before=1.09), "little beside noise"),
         (sum_of(CLEAR, CLEAR, before=1.12), ""),
         (sum_of(CLEAR, before=1.03), ""),
+        (sum_of(CLEAR, before=1.03, by_run=1), ""),
+        (sum_of(CLEAR, before=1.03, by_run=1, removed=0.01), "next to nothing"),  # a receiver that wanders, by run
         (sum_of(CLEAR, SMALL_BUT_CLEAR, remains=True), "on test trials"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=2), "from run to run"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=1), ""),

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from mmgtune.diagnose import diagnose
-from mmgtune.diagnose.of_hull import in_words
+from mmgtune.diagnose.of_hull import explained_by_hull, in_words
+from mmgtune.effects import find_effect
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
@@ -62,3 +63,10 @@ def test_what_a_hull_explains_is_told_from_half_on(share, said):
     told = in_words(SimpleNamespace(options=DiagnoseOptions()), "shallow-water", share)
     assert said in told
     assert bool(told) == bool(said)
+
+
+def test_where_a_run_is_lost_without_a_cause_no_share_of_it_is_asked_for():
+    """Of an infinite fall it would be no number, which no record of a diagnosis can hold."""
+    bench = SimpleNamespace(believed=SimpleNamespace(leeway={"hull.Y_v": 0.05}))
+    cause = SimpleNamespace(effect=find_effect("wind"), by="", instead=())
+    assert explained_by_hull(bench, cause, SimpleNamespace(chi2=float("inf")), 1000.0) == 0.0
