@@ -32,19 +32,20 @@ from ..trial.set_checks import turn_away
 from ..trial.swell import period_of, swings
 from .belief import TOLD
 from .contributions import removed_by, set_aside
-from .hypotheses import known_causes, not_looked_for, of_runs
+from .hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
 from .judging import Judge
 from .jumped import in_parts
 from .jumped import in_words as jumps_in_words
 from .leftover import NOTICED, SWELLS, beside_swell, leftover
 from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
+from .refit import ENOUGH
 from .result import Diagnosis
-from .search import search
+from .search import Found, doubtful_beginning, search
 from .together import Together
 from .unseen import Unseen
 from .voyages import Choice, looked_at, with_hull_held
-from .workbench import make_workbench
+from .workbench import Workbench, make_workbench
 
 
 @blas_on_one_thread
@@ -137,24 +138,36 @@ def _looked_at(
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not set(h.instead) & set(bench.targets)]
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
-    found = search(bench, [*known, *differing_by_run], in_place, hooks.on_phase)
-    test = [found.held.evenly(trial) for trial in test] if found.held else test
-    hooks.on_phase("measuring the gain")
-    before = leftover(bench, found.base)
-    unseen = Unseen(bench, test)
-    with_traces = found.final
-    traces, brought = set_aside(bench, found, unseen, before)
-    of_traces = removed_by(bench, traces, with_traces, found.final)
-    differing: Sequence[Difference] = ()
-    if choice is not None and not hooks.stop():
-        hooks.on_phase("comparing the voyages")
-        differing = differences(bench, found.final, choice.voyages)
-    hooks.on_phase("gathering the evidence")
     asked = [*known, *in_place]
-    judge = Judge(
-        bench, profile, options, provenance, hooks, asked, unseen, before, traces, of_traces, choice, differing
-    )
-    result, found = judge.answer(found, brought)
+
+    def answered(hypotheses: Sequence[Hypothesis]) -> tuple[Diagnosis, Found]:
+        """The answer of a search among some of the hypotheses."""
+        found = search(bench, hypotheses, in_place, hooks.on_phase)
+        hooks.on_phase("measuring the gain")
+        before = leftover(bench, found.base)
+        unseen = Unseen(bench, [found.held.evenly(trial) for trial in test] if found.held else test)
+        with_traces = found.final
+        traces, brought = set_aside(bench, found, unseen, before)
+        of_traces = removed_by(bench, traces, with_traces, found.final)
+        differing: Sequence[Difference] = ()
+        if choice is not None and not hooks.stop():
+            hooks.on_phase("comparing the voyages")
+            differing = differences(bench, found.final, choice.voyages)
+        hooks.on_phase("gathering the evidence")
+        judge = Judge(
+            bench, profile, options, provenance, hooks, asked, unseen, before, traces, of_traces, choice, differing
+        )
+        return judge.answer(found, brought)
+
+    result, found = answered([*known, *differing_by_run])
+    if result.verdict == "unexplained" and (first := doubtful_beginning(bench, found)) and not hooks.stop():
+        hooks.on_phase(f"looking again without {first}")
+        spreads, bench.spreads = bench.spreads, {}
+        other, others = answered([one for one in (*known, *differing_by_run) if one.tag != first])
+        if other.names_causes and _fits_better(bench, others, found):
+            result, found = other, others
+        else:
+            bench.spreads = spreads
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     told = capital(jumps_in_words(jumped))
@@ -172,10 +185,19 @@ def _looked_at(
     swinging, period = _swinging(whole, profile.L_pp)
     if not swinging:
         return result
-    if not result.causes and not unseen.test and beside_swell(bench, found.final, period) < NOTICED:
+    if not result.causes and not test and beside_swell(bench, found.final, period) < NOTICED:
         averaged = f"Averaged over {SWELLS:g} such periods, what the re-tuned model leaves is noise"
         return replace(result, swell=f"{swinging}. {averaged}: nothing else is wrong.", whereabouts=None)
     return replace(result, contradicted=f"{swinging}: that may be all that is left.")
+
+
+def _fits_better(bench: Workbench, one: Found, other: Found) -> bool:
+    """Whether the causes of one search leave less than those of another, by the noise as known now."""
+    chi2 = [
+        bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0, spreads=point.spreads).chi2
+        for point in (one.final, other.final)
+    ]
+    return chi2[0] < chi2[1] - ENOUGH
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:

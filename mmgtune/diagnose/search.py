@@ -38,6 +38,9 @@ explains most of it too."""
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
 
+AS_WELL = 0.02
+"""Share by which the gains of two effects differ at most that do as well as each other at the first look."""
+
 FINER = 4
 """The integration step as a cause: a Runge-Kutta step this many times finer."""
 
@@ -166,6 +169,19 @@ def search(
         _make_plain(bench, found, hypotheses)
     found.more = found.more and len(found.causes) == TOO_MANY - 1
     return found
+
+
+def doubtful_beginning(bench: Workbench, found: Found) -> str:
+    """Tag of the first cause where another may have been the one to begin with: a part of its form ended at the end of
+    its range, so that its force is that of others together, or another effect did as well; "" else."""
+    if not found.causes:
+        return ""
+    first, unit = found.causes[0], dict(zip(found.final.names, found.final.unit, strict=True))
+    if any(not 0.0 < unit.get(name, 0.5) < 1.0 for name in bench.believed.form_of(first.effect)):
+        return first.tag
+    best, *others = found.steps[0].refits
+    near = any(one.hypothesis.tag != first.tag and abs(one.gain / best.gain - 1.0) < AS_WELL for one in others)
+    return first.tag if near and best.hypothesis.tag == first.tag else ""
 
 
 def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
