@@ -39,7 +39,7 @@ from .jumped import in_words as jumps_in_words
 from .leftover import NOTICED, SWELLS, beside_swell, leftover
 from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
-from .refit import ENOUGH
+from .refit import ENOUGH, Refit
 from .result import Diagnosis
 from .search import Found, doubtful_beginning, search
 from .together import Together
@@ -140,9 +140,10 @@ def _looked_at(
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
     asked = [*known, *in_place]
 
-    def answered(hypotheses: Sequence[Hypothesis]) -> tuple[Diagnosis, Found]:
-        """The answer of a search among some of the hypotheses."""
+    def answered(hypotheses: Sequence[Hypothesis], left_out: Sequence[Refit] = ()) -> tuple[Diagnosis, Found]:
+        """The answer of a search among some of the hypotheses; an effect left out may do as well as what is found."""
         found = search(bench, hypotheses, in_place, hooks.on_phase)
+        found.left_out = list(left_out)
         hooks.on_phase("measuring the gain")
         before = leftover(bench, found.base)
         unseen = Unseen(bench, [found.held.evenly(trial) for trial in test] if found.held else test)
@@ -163,7 +164,8 @@ def _looked_at(
     if result.verdict == "unexplained" and (first := doubtful_beginning(bench, found)) and not hooks.stop():
         hooks.on_phase(f"looking again without {first}")
         spreads, bench.spreads = bench.spreads, {}
-        other, others = answered([one for one in (*known, *differing_by_run) if one.tag != first])
+        refits = [one for one in found.steps[0].refits if one.hypothesis.tag == first]
+        other, others = answered([one for one in (*known, *differing_by_run) if one.tag != first], refits)
         if other.names_causes and _fits_better(bench, others, found):
             result, found = other, others
         else:

@@ -86,6 +86,7 @@ class Found:
     steps   every look, the last one in vain
     held    what the logs hold between updates, where that is a cause; the base is read accordingly too
     more    whether much is left beside as many causes as are believed together, so that no further one was looked for
+    left_out  refits of another search of an effect that was not looked for in this one
     """
 
     base: Point
@@ -95,6 +96,7 @@ class Found:
     finer_step: float | None = None
     held: Held | None = None
     more: bool = False
+    left_out: list[Refit] = field(default_factory=list)
 
 
 def search(
@@ -422,9 +424,9 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
     if step is None:
         return []
     others = [one for one in found.steps if one is not step and one.accepted and _is_of(one, cause)]
-    if len(found.causes) == 1 and not others:
+    if len(found.causes) == 1 and not others and not found.left_out:
         return rivals_among(step.refits)
-    near = [rival for one in (step, *others) for rival in _near(one, cause)]
+    near = [*(rival for one in (step, *others) for rival in _near(one, cause)), *found.left_out]
     fewer = without(bench, found.final, cause)
     best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
     rivals: dict[str, Refit] = {}
