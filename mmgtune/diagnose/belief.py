@@ -37,7 +37,8 @@ values bend to what is elsewhere, or at another hour, and not of the run at all.
 
 TOLD = 0.5
 """Share of the held-out error that causes must remove which were found once no trial was kept for testing, and several
-causes anyhow: what little there is any two or three would imitate; and a single one whose size may be none."""
+causes anyhow: what little there is any two or three would imitate; and a single one whose size may be none.  One of
+several without which that share of the fall of chi-squared is lost is there, whatever its size."""
 
 GUSTS_LEAVE, OF_WIND = 20.0, 0.25
 """Variance beyond noise that gusts of a wind that was found would have to account for, and share of chi-squared before
@@ -104,7 +105,9 @@ class Belief:
             return "it leaves far more than noise, and more than gusts of such a wind would"
         if why := self._bent:
             return why
-        unsized = list(dict.fromkeys(cause.tag for cause in self.causes if not cause.sized))
+        surely = {tag for tag, one in self.contributions if one.seen > TOLD and len(brought) > 1}
+        doubtful = [one for one in self.causes if not one.sized and one.tag not in surely]
+        unsized = list(dict.fromkeys(one.tag for one in doubtful))
         not_told = f"how large {listed(unsized)} would be is not told, if anything at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"

@@ -42,8 +42,12 @@ def evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -
     return shown
 
 
-def error_of(bench: Workbench, found: Found, told: Leftover) -> Whereabouts:
-    """Where the error of the model without any cause lives, what of it is an offset of a log, and what logs warn of."""
+def error_of(bench: Workbench, found: Found, before: Leftover, told: Leftover) -> Whereabouts:
+    """Where the error of the model without any cause lives, what of it is an offset of a log, and what logs warn of.
+
+    before, told  what the model leaves without any cause, and with what is not believed: a sensor is blamed where both
+                  show it
+    """
     by_run = _excess_by_run(bench, found.base)
     whole = sum(by_run.values())
     removable: dict[str, float] = {}
@@ -56,8 +60,9 @@ def error_of(bench: Workbench, found: Found, told: Leftover) -> Whereabouts:
     ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
     odd = oddest({trial.id: trial for trial in bench.trials}, bench.model.L_pp)
     of_runs = {trial.run: odd[trial.id] for trial in bench.trials if trial.id in odd}
-    where = whereabouts(_forces(bench, found.base), by_run, ranked, told.offsets, of_runs)
-    where = replace(where, channel=told.alone)
+    offsets = {name: of for name, of in told.offsets.items() if name in before.offsets}
+    where = whereabouts(_forces(bench, found.base), by_run, ranked, offsets, of_runs)
+    where = replace(where, channel=told.alone if told.alone == before.alone else "")
     changed = {trial: f"the factor of the {LOGGED[name]} changes" for name, of in told.changed.items() for trial in of}
     return replace(where, odd=changed) if changed else where
 
@@ -85,7 +90,7 @@ def _forces(bench: Workbench, point: Point) -> list[tuple[ResidualForces, Trial]
 
 
 def _long_enough(bench: Workbench) -> list[Trial]:
-    return [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
+    return [trial for trial in bench.trials if np.isfinite(trial.motion[:, 2:]).all(axis=1).sum() >= FEWEST]
 
 
 def _models(bench: Workbench, point: Point, trials: Sequence[Trial]) -> list[Model]:

@@ -96,7 +96,7 @@ class Judge:
             other = self._judged(alone, [])
             result, found = (other, alone) if other.verdict == "none" else (result, found)
         if result.verdict == "unexplained" and not result.misses_test:
-            result = replace(result, whereabouts=error_of(self.bench, found, result.leftover))
+            result = replace(result, whereabouts=error_of(self.bench, found, self.before, result.leftover))
         elif result.verdict != "interrupted":
             result = replace(result, moved=tuple(retuned(self.bench, found.final)))
         if result.verdict == "none" and self.choice is None:
@@ -221,10 +221,15 @@ def _first(found: Found) -> Point:
     return found.base if as_given else found.steps[0].base
 
 
+def leaves_much_open(trials: Sequence[Trial], left: Leftover, options: DiagnoseOptions) -> bool:
+    """Whether the inputs of long runs are known too seldom to follow these to their end: windows tell more of them."""
+    longest = max(trial.duration for trial in trials)
+    return options.restart is None and left.left_open >= MUCH_OPEN and longest >= 2.0 * WINDOW
+
+
 def _left_open(bench: Workbench, left: Leftover, options: DiagnoseOptions) -> list[str]:
-    """That windows would tell more of long runs whose inputs are known too seldom to follow them to their end."""
-    longest = max(trial.duration for trial in bench.trials)
-    if options.restart is not None or left.left_open < MUCH_OPEN or longest < 2.0 * WINDOW:
+    """That windows would tell more of such runs."""
+    if not leaves_much_open(bench.trials, left, options):
         return []
     said = (
         "what the inputs did between samples of their log grows to many times the noise in runs as long as these: "

@@ -23,6 +23,7 @@ from ..made_from import identity_of, make_provenance
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..options.choice import must_be
+from ..options.scoring import WINDOW
 from ..phrases import capital
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
@@ -33,7 +34,7 @@ from ..trial.swell import period_of, swings
 from .belief import TOLD
 from .contributions import removed_by, set_aside
 from .hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
-from .judging import Judge
+from .judging import Judge, leaves_much_open
 from .jumped import in_parts
 from .jumped import in_words as jumps_in_words
 from .leftover import NOTICED, SWELLS, beside_swell, leftover
@@ -91,7 +92,39 @@ def diagnose(
             with suppress(ProfileError):  # where the model runs away on the others there is nothing more to look at
                 of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)
                 result = _settled(result, of_all)
+        elif choice is None and result.verdict in ("unexplained", "not-separable") and not hooks.stop():
+            result = _in_windows(profile, trials, options, hooks, provenance, result)
         return replace(result, wall_s=time.perf_counter() - began)
+
+
+def _in_windows(
+    profile: ShipProfile,
+    trials: TrialSet,
+    options: DiagnoseOptions,
+    hooks: Hooks,
+    provenance: dict[str, Any],
+    whole: Diagnosis,
+) -> Diagnosis:
+    """The answer of whole runs, or that of windows of these, where inputs leave too much open over whole runs, and
+    windows name causes that these do not, or fewer rivals of them."""
+    if not leaves_much_open(list(trials.trials.values()), whole.leftover, options):
+        return whole
+    hooks.on_phase(f"looking at windows of {WINDOW:g} s")
+    with suppress(ProfileError):
+        windows = _looked_at(profile, trials, None, replace(options, restart=WINDOW), hooks, provenance)
+        if windows.names_causes and (not whole.names_causes or _rivals(windows) < _rivals(whole)):
+            said = (
+                f"Told by windows of {WINDOW:g} s, each with a beginning of its own: over whole runs, what the inputs "
+                "did between samples of their log hides it."
+            )
+            return replace(windows, warnings=(said, *windows.warnings))
+        return replace(whole, interrupted=windows.interrupted)
+    return whole
+
+
+def _rivals(result: Diagnosis) -> int:
+    """How many causes are not told apart."""
+    return sum(map(len, result.groups))
 
 
 def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:

@@ -41,6 +41,10 @@ TOO_MANY = 4
 AS_WELL = 0.02
 """Share by which the gains of two effects differ at most that do as well as each other at the first look."""
 
+ALIKE, HARDLY = 0.0005, 0.05
+"""Share of the fall of chi-squared, and chi-squared per residual, that one value for all may leave beside values of
+each run to be taken for them: a current that is the same within a hundredth belongs in the profile."""
+
 FINER = 4
 """The integration step as a cause: a Runge-Kutta step this many times finer."""
 
@@ -379,7 +383,9 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
             saved = (len(cause.names) - len(one.names)) * bench.price
             if one.by != cause.by:
                 saved = _price(bench, found, cause) - len(one.names) * bench.price
-            if fewer.chi2 - found.final.chi2 < saved + ENOUGH:
+            rise, fall = fewer.chi2 - found.final.chi2, found.base.chi2 - found.final.chi2
+            hardly = rise < min(ALIKE * fall, HARDLY * bench.problem.n_residuals)
+            if rise < saved + ENOUGH or (one.by != cause.by and hardly):
                 found.causes[found.causes.index(cause)] = one
                 found.final = fewer
                 break
