@@ -179,15 +179,17 @@ def search(
 
 def doubtful_beginning(bench: Workbench, found: Found) -> str:
     """Tag of the first cause where another may have been the one to begin with: a part of its form ended at the end of
-    its range, so that its force is that of others together, or another effect did as well; "" else."""
+    its range, so that its force is that of others together, or another effect did as well at the first look, be what
+    was begun with a cause still or not; "" else."""
     if not found.causes:
         return ""
     first, unit = found.causes[0], dict(zip(found.final.names, found.final.unit, strict=True))
     if any(not 0.0 < unit.get(name, 0.5) < 1.0 for name in bench.believed.form_of(first.effect)):
         return first.tag
     best, *others = found.steps[0].refits
-    near = any(one.hypothesis.tag != first.tag and abs(one.gain / best.gain - 1.0) < AS_WELL for one in others)
-    return first.tag if near and best.hypothesis.tag == first.tag else ""
+    begun = best.hypothesis.tag
+    near = any(one.hypothesis.tag != begun and abs(one.gain / best.gain - 1.0) < AS_WELL for one in others)
+    return begun if near else ""
 
 
 def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:

@@ -19,7 +19,7 @@ def refit(tag, gain):
         (0.6, {"wind": 100.0, "current": 90.0}, ""),
         (0.0, {"wind": 100.0, "current": 90.0}, "wind"),  # a force ahead that no wind has: it is that of a current too
         (0.6, {"wind": 100.0, "wave-drift": 99.0}, "wind"),
-        (0.6, {"wave-drift": 100.0, "wind": 99.0}, ""),  # what was begun with is no cause any more
+        (0.6, {"wave-drift": 100.0, "wind": 99.0}, "wave-drift"),  # though it is no cause any more: it took a place
         (0.6, {"wind": 100.0, "current": 400.0}, ""),  # by chance, or it would have been the first
         (0.6, {}, ""),
     ],

@@ -392,6 +392,7 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
 
 def sum_of(
     *brought,
+    tags=("tag",) * 5,
     groups=(),
     structured=False,
     explains_all=False,
@@ -414,7 +415,7 @@ def sum_of(
         causes=[
             SimpleNamespace(runs=k < by_run, sized=sized, tag="wind", at_ends=at_ends) for k in range(len(brought))
         ],
-        contributions=[("tag", one) for one in brought],
+        contributions=list(zip(tags[: len(brought)], brought, strict=True)),
         groups=groups,
         leftover=leftover,
         rest=Diagnosis.rest.fget(SimpleNamespace(leftover=leftover, of_traces=of_traces)),
@@ -478,6 +479,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, CLEAR, removed=0.46), "removes little"),
         (sum_of(CLEAR, CLEAR, removed=-0.16), "removes little"),
         (sum_of(CLEAR, CLEAR, sized=False), "how large wind would be is not told"),
+        (sum_of(CLEAR, CLEAR, sized=False, tags=("wind", "wind")), ""),  # without either most of the error comes back
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, sized=False, tags=("current", "wind")), "how large wind would be is not told"),
         (sum_of(CLEAR, sized=False), ""),
         (sum_of(CLEAR, sized=False, removed=0.2), "how large wind would be is not told"),
         (sum_of(CLEAR, removed=0.2), ""),
@@ -517,14 +520,23 @@ def test_what_is_little_beside_noise_may_be_chance(one, chance):
 
 
 @pytest.mark.parametrize(
-    ("explained", "held_out", "sized", "leads"),
-    [(0.97, 0.9, True, True), (0.7, 0.9, True, False), (0.97, 0.5, True, False), (0.97, 0.9, False, False)],
+    ("explained", "held_out", "sized", "goes_with", "leads"),
+    [
+        (0.97, 0.9, True, None, True),
+        (0.97, 0.9, True, "", True),
+        (0.97, 0.9, True, "the rudder angle", False),  # what is not of the run is no size of its cause
+        (0.7, 0.9, True, None, False),
+        (0.97, 0.5, True, None, False),
+        (0.97, 0.9, False, None, False),
+    ],
 )
 def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_is_most(
-    explained, held_out, sized, leads
+    explained, held_out, sized, goes_with, leads
 ):
     """An antenna 110 m aft, beside a form of the hull that nobody knows, was named without its size."""
-    cause = SimpleNamespace(sized=sized, at_ends=False, tag="antenna", sentence="The antenna stood 110 m aft")
+    runs = None if goes_with is None else SimpleNamespace(goes_with=goes_with)
+    sentence = "The antenna stood 110 m aft"
+    cause = SimpleNamespace(sized=sized, at_ends=False, tag="antenna", sentence=sentence, runs=runs)
     gain = SimpleNamespace(share_removed=held_out, surely_removed=0.0)
     another = SimpleNamespace(sized=True, at_ends=False, tag="hull-term")
     first = SimpleNamespace(causes=(SimpleNamespace(tag="antenna"),), explained_share=explained, gain=gain)

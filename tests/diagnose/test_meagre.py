@@ -49,6 +49,14 @@ def test_every_number_of_the_answer_is_one(made):
     assert "forces_before" not in said["evidence"] or made is not short
 
 
+def test_a_heading_that_was_not_measured():
+    """Residual forces were asked for of runs without one, which ended in an error about windows of 60 s."""
+    trials = load_trials("suzaku").trials
+    given = [replace(trials[name], derived=("psi",)) for name in ("turn_p35", "turn_m40")]
+    result = diagnose("suzaku", given, DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",)))
+    json.dumps(result.to_dict(), allow_nan=False)
+
+
 def test_fewer_samples_than_coefficients():
     """Ended in a ValueError of arrays of different shapes."""
     trial = load_trials("suzaku").trials["turn_p35"]

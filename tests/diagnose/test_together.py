@@ -69,6 +69,7 @@ class Answer:
     is_beyond_all: bool
     gain: SimpleNamespace
     wall_s: float = 0.0
+    verdict: str = "none"
 
 
 @pytest.mark.parametrize("beyond", [False, True])
