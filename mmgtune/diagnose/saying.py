@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from ..phrases import capital, in_percent, listed
+from ..units import DEG
 from .belief import TOLD
 from .gain import MOST
 from .jumped import in_words as jumps_in_words
@@ -19,6 +20,10 @@ IMITATED = 0.5
 
 LARGE = 10.0
 """Variance beyond noise from which it is told as a multiple of the noise."""
+
+
+FADES = 5.0
+"""How many times as large as its white part the slow part of a channel's noise must be to be spoken of."""
 
 
 class Said(NamedTuple):
@@ -126,14 +131,26 @@ def _of_none(answer: Answer) -> list[str]:
         )
     if far := moved_in_words(answer.moved):
         said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-        return [said, besides(answer.moved), weighed(answer.moved), few]
+        return [said, besides(answer.moved), weighed(answer.moved), few, _fading(answer)]
     return [
         f"Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and {none}.",
         far_off(answer.moved),
         weighed(answer.moved),
         answer.instead.sentence if answer.instead else "",
         few,
+        _fading(answer),
     ]
+
+
+def _fading(answer: Answer) -> str:
+    """That slow errors of positions or heading count as noise, where they are far larger than quick ones."""
+    far = {name: one["fading"] for name, one in answer.noise.items() if one["fading"] > FADES * one["white"]}
+    positions = max(far.get("x", 0.0), far.get("y", 0.0))
+    told = [f"{positions:.2g} m in the positions"] if positions else []
+    told += [f"{far['psi'] / DEG:.2g}° in the heading"] if "psi" in far else []
+    if not told:
+        return ""
+    return f"Errors that fade slowly, {listed(told)}, count as noise of the sensors: a cause that does no more does not show."
 
 
 def _times(ratio: float) -> str:

@@ -827,3 +827,22 @@ def test_what_traces_remove_is_accounted_for_where_they_are_no_other_thing(trace
     monkeypatch.setattr(contributed, "leftover", lambda bench, point: SimpleNamespace(unknown=point))
     traces = [SimpleNamespace(contribution=trace)] if trace else []
     assert removed_by(None, traces, 0.01, 0.05) == pytest.approx(removed)
+
+
+@pytest.mark.parametrize(
+    ("fading", "said"),
+    [
+        ({}, ""),
+        ({"x": 0.9, "y": 1.4}, ""),  # a few times the white part, as of many receivers
+        ({"x": 1.8, "y": 2.4, "psi": 0.74 * DEG}, "2.4 m in the positions and 0.74° in the heading, count as noise"),
+        ({"psi": 0.74 * DEG}, "Errors that fade slowly, 0.74° in the heading"),
+        ({"u": 1.0}, ""),
+    ],
+)
+def test_slow_errors_that_count_as_noise_are_told(fading, said):
+    """Time stamps that jittered by 1.2 s were no more than "the noise of the measurements"."""
+    white = {"x": 0.3, "y": 0.3, "psi": 0.1 * DEG, "u": 0.02}
+    noise = {name: {"white": one, "fading": fading.get(name, 0.0)} for name, one in white.items()}
+    told = saying._fading(SimpleNamespace(noise=noise))
+    assert said in told
+    assert bool(told) == bool(said)
