@@ -150,7 +150,8 @@ def _fading(answer: Answer) -> str:
     told += [f"{far['psi'] / DEG:.2g}° in the heading"] if "psi" in far else []
     if not told:
         return ""
-    return f"Errors that fade slowly, {listed(told)}, count as noise of the sensors: a cause that does no more does not show."
+    slow = f"Errors that fade slowly, {listed(told)}, count as noise of the sensors"
+    return f"{slow}: a cause that does no more does not show."
 
 
 def _times(ratio: float) -> str:
