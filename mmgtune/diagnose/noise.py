@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -183,17 +183,26 @@ def estimate(
     found = _autocovariances(cases, residuals[:, None])
     counts = {channel: sum(map(len, series)) for channel, series in rows_of_channels(cases).items()}
     model = NoiseModel(cases, {channel: _decompose(found[channel], counts[channel]) for channel in found})
-    if fitted is None or model.may_be_error or not model.coloured:
+    if fitted is None or model.may_be_error:
         return model
     plain = np.random.default_rng(0).standard_normal((len(residuals), DRAWS))
+
+    def allowing(assumed: NoiseModel, channels: Iterable[str]) -> dict[str, ChannelNoise]:
+        """Noise of channels, with what fitting takes of the noise assumed put back."""
+        left = _autocovariances(cases, fitted(assumed.restore(plain)))
+        taken = {channel: assumed.channels[channel].autocovariance - left[channel] for channel in channels}
+        return {channel: _decompose(found[channel] + one, counts[channel]) for channel, one in taken.items()}
+
+    # What fitting leaves of white noise alternates, which hides noise that fades.
+    pure = NoiseModel(cases, {name: ChannelNoise(white=float(max(one[0], 1e-12))) for name, one in found.items()})
+    unseen = allowing(pure, [name for name, noise in model.channels.items() if noise.fading == 0.0])
+    seen = {name: noise for name, noise in unseen.items() if noise.fading > 0.0}
+    model = NoiseModel(cases, {**model.channels, **seen})
+    if model.may_be_error or not model.coloured:
+        return model
     for _ in range(ROUNDS):
-        left = _autocovariances(cases, fitted(model.restore(plain)))
-        channels = dict(model.channels)
-        for channel, noise in model.channels.items():
-            if noise.fading > 0.0:
-                taken = noise.autocovariance - left[channel]
-                channels[channel] = _decompose(found[channel] + taken, counts[channel])
-        model = NoiseModel(cases, channels)
+        again = allowing(model, [name for name, noise in model.channels.items() if noise.fading > 0.0])
+        model = NoiseModel(cases, {**model.channels, **again})
     return model
 
 

@@ -95,6 +95,21 @@ def test_the_profile_keeps_nothing_of_a_run_and_the_record_all(currents, tmp_pat
     assert [line.split()[0] for line in told.splitlines() if " m/s   " in line] == sorted(TUNING)
 
 
+def test_a_current_that_hardly_differs_is_one_for_all(tmp_path):
+    """A hundredth of it from run to run shows, and kept the whole current out of the profile."""
+    strengths = dict(zip(NAMES, 0.45 + 0.006 * np.array([1, 1, -1, 1, 1, -1, -1, 1, -1, 1]), strict=True))
+    of_trial = {name: {"current": {"north": -one, "east": 0.3 * one}} for name, one in strengths.items()}
+    case = replace(of_runs("current", 3, seed=1), of_trial=of_trial)
+    result = said_of(case, tmp_path, ("current",))
+    (cause,) = result.causes
+    assert result.verdict == "found"
+    gains = {one.by: one.gain for one in result.candidates if one.parameters == ("north", "east")}
+    assert gains["trial"] - gains[""] > 50.0
+    assert cause.runs is None
+    assert cause.estimates["effects.current.north"].value == pytest.approx(-0.45, abs=0.01)
+    assert "effects.current" in parse_profile(result.extended_text()).sections
+
+
 @pytest.mark.long
 def test_a_current_in_one_run_only(tmp_path):
     case = of_one_run(seed=1)

@@ -88,6 +88,49 @@ def test_a_sum_that_is_not_believed_is_not_looked_for_in_more_trials(beyond, mon
     assert looked_at == ([4] if beyond else [4, 0])
 
 
+@pytest.mark.parametrize(
+    ("whole", "windows", "left_open", "told"),
+    [
+        ("unexplained", "found", 3.0, "windows"),
+        ("unexplained", "unexplained", 3.0, "whole"),
+        ("not-separable", "found", 3.0, "windows"),  # fewer rivals
+        ("unexplained", "found", 1.0, "whole"),  # not looked at
+        ("found", "found", 3.0, "whole"),
+        ("none", "found", 3.0, "whole"),
+    ],
+)
+def test_windows_are_looked_at_where_whole_runs_leave_much_open(whole, windows, left_open, told, monkeypatch):
+    """A wind stood for a current and a zero of the rudder, as what that did between samples excused the rest."""
+
+    @dataclass(frozen=True)
+    class Seen:
+        verdict: str
+        of: str
+        leftover: SimpleNamespace
+        gain: SimpleNamespace
+        is_beyond_all: bool = False
+        interrupted: bool = False
+        warnings: tuple[str, ...] = ()
+        wall_s: float = 0.0
+
+        @property
+        def names_causes(self):
+            return self.verdict in ("found", "not-separable")
+
+        @property
+        def groups(self):
+            return (("wind", "current"),) if self.verdict == "not-separable" else ()
+
+    def look(profile, trials, choice, options, *rest):
+        verdict, of = (whole, "whole") if options.restart is None else (windows, "windows")
+        return Seen(verdict, of, SimpleNamespace(left_open=left_open), SimpleNamespace(missed=False))
+
+    monkeypatch.setattr(import_module("mmgtune.diagnose.run"), "_looked_at", look)
+    result = diagnose(load_profile("suzaku"), load_trials("suzaku"))
+    assert result.of == told
+    assert bool(result.warnings) == (told == "windows")
+
+
 def test_without_a_cause_motion_may_run_away():
     assert share_lost(100.0, float("inf"), 10.0) == 1.0
     assert share_lost(100.0, 55.0, 10.0) == pytest.approx(0.5)
