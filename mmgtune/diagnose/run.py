@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -173,7 +173,7 @@ def _looked_at(
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
     asked = [*known, *in_place]
 
-    def answered(hypotheses: Sequence[Hypothesis], left_out: Sequence[Refit] = ()) -> tuple[Diagnosis, Found]:
+    def answered(hypotheses: Sequence[Hypothesis], left_out: Sequence[Refit]) -> tuple[Diagnosis, Found]:
         """The answer of a search among some of the hypotheses; an effect left out may do as well as what is found."""
         found = search(bench, hypotheses, in_place, hooks.on_phase)
         found.left_out = list(left_out)
@@ -193,16 +193,7 @@ def _looked_at(
         )
         return judge.answer(found, brought)
 
-    result, found = answered([*known, *differing_by_run])
-    if result.verdict == "unexplained" and (first := doubtful_beginning(bench, found)) and not hooks.stop():
-        hooks.on_phase(f"looking again without {first}")
-        spreads, bench.spreads = bench.spreads, {}
-        refits = [one for one in found.steps[0].refits if one.hypothesis.tag == first]
-        other, others = answered([one for one in (*known, *differing_by_run) if one.tag != first], refits)
-        if other.names_causes and _fits_better(bench, others, found):
-            result, found = other, others
-        else:
-            bench.spreads = spreads
+    result, found = _of_the_better_beginning(bench, answered, [*known, *differing_by_run], hooks)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     told = capital(jumps_in_words(jumped))
@@ -224,6 +215,28 @@ def _looked_at(
         averaged = f"Averaged over {SWELLS:g} such periods, what the re-tuned model leaves is noise"
         return replace(result, swell=f"{swinging}. {averaged}: nothing else is wrong.", whereabouts=None)
     return replace(result, contradicted=f"{swinging}: that may be all that is left.")
+
+
+def _of_the_better_beginning(
+    bench: Workbench,
+    answered: Callable[[Sequence[Hypothesis], Sequence[Refit]], tuple[Diagnosis, Found]],
+    hypotheses: Sequence[Hypothesis],
+    hooks: Hooks,
+) -> tuple[Diagnosis, Found]:
+    """The answer of a search; where that is unexplained, and another cause may have been the one to begin with, of one
+    without the first, if its causes are believed and leave less."""
+    result, found = answered(hypotheses, ())
+    begun = doubtful_beginning(bench, found) if result.verdict == "unexplained" and not hooks.stop() else []
+    if not begun:
+        return result, found
+    first = begun[0].hypothesis.tag
+    hooks.on_phase(f"looking again without {first}")
+    spreads, bench.spreads = bench.spreads, {}
+    other, others = answered([one for one in hypotheses if one.tag != first], begun)
+    if other.names_causes and _fits_better(bench, others, found):
+        return other, others
+    bench.spreads = spreads
+    return replace(result, interrupted=other.interrupted), found
 
 
 def _fits_better(bench: Workbench, one: Found, other: Found) -> bool:

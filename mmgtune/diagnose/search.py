@@ -177,19 +177,24 @@ def search(
     return found
 
 
-def doubtful_beginning(bench: Workbench, found: Found) -> str:
-    """Tag of the first cause where another may have been the one to begin with: a part of its form ended at the end of
-    its range, so that its force is that of others together, or another effect did as well at the first look, be what
-    was begun with a cause still or not; "" else."""
-    if not found.causes:
-        return ""
+def doubtful_beginning(bench: Workbench, found: Found) -> list[Refit]:
+    """Refits of the first cause where another may have been the one to begin with; none else.
+
+    That is so where a part of its form ended at the end of its range, so that its force is that of others together, and
+    where another effect did as well at the first look, be what was begun with a cause still or not.
+    """
+    looks = [step.refits for step in found.steps if step.accepted and step.refits]
+    read_otherwise = found.held is not None or found.finer_step is not None  # since the first look
+    if read_otherwise or not (found.causes and looks):
+        return []
     first, unit = found.causes[0], dict(zip(found.final.names, found.final.unit, strict=True))
+    best, *others = looks[0]
+    tag = ""
     if any(not 0.0 < unit.get(name, 0.5) < 1.0 for name in bench.believed.form_of(first.effect)):
-        return first.tag
-    best, *others = found.steps[0].refits
-    begun = best.hypothesis.tag
-    near = any(one.hypothesis.tag != begun and abs(one.gain / best.gain - 1.0) < AS_WELL for one in others)
-    return begun if near else ""
+        tag = first.tag
+    elif any(one.hypothesis.tag != best.hypothesis.tag and abs(one.gain / best.gain - 1.0) < AS_WELL for one in others):
+        tag = best.hypothesis.tag
+    return [one for refits in looks for one in refits if one.hypothesis.tag == tag]
 
 
 def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
