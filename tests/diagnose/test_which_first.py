@@ -112,11 +112,16 @@ def test_what_was_near_to_another_form_of_a_cause_is_its_rival(monkeypatch, gain
     second = [replace(fitted("loading", 24.0, 1.0, 0.0), hypothesis=draught)]
     base = SimpleNamespace(chi2=20_000.0, names=())
     steps = [Step(base, None, [], refits, [], True, "") for refits in (first, second)]
-    found = SimpleNamespace(causes=[draught], final=SimpleNamespace(chi2=base.chi2 - 5_650.0), steps=steps)
+    final = SimpleNamespace(chi2=base.chi2 - 5_650.0)
+    found = SimpleNamespace(causes=[draught], final=final, steps=steps, left_out=[])
     monkeypatch.setattr(search, "without", lambda *_: base)
     monkeypatch.setattr(search, "hopeless_beside", lambda *_: math.inf)
     monkeypatch.setattr(search, "_with", lambda *_: SimpleNamespace(chi2=base.chi2 - gain))
     assert [one.hypothesis.tag for one in search.rivals_of(None, found, draught)] == rivals
+    # What a second search leaves out did as well at the first look, and may in the place of what it finds.
+    found.steps, found.left_out = steps[1:], [fitted("thrust", 5_640.0, 1.0, 0.0)]
+    beside = [one.hypothesis.tag for one in search.rivals_of(None, found, draught)]
+    assert beside == (["thrust"] if rivals else [])
 
 
 @pytest.mark.parametrize(
