@@ -49,7 +49,9 @@ def mutated(rng: np.random.Generator, tree: Any, odd: tuple[Any, ...] = ODD) -> 
     elif how == 4:
         del parent[path[-1]]
     elif how == 5 and isinstance(value, (int, float)) and not isinstance(value, bool):
-        parent[path[-1]] = value * pick(rng, (-1, 0, 1e-9, 1e9, 1e300, 1e-300, 10, 0.1))
+        factor = pick(rng, (-1, 0, 1e-9, 1e9, 1e300, 1e-300, 10, 0.1))
+        beyond = isinstance(value, int) and abs(value) > 10**300  # no float holds it, as an earlier change may leave it
+        parent[path[-1]] = value * (int(factor) if beyond else factor)
     elif how == 6 and isinstance(parent, dict):
         parent[odd_text(rng)] = value
     else:
