@@ -8,7 +8,7 @@ one.  They are whitened, and freed of what the initial states and the free coeff
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +44,10 @@ their box are not allowed to imitate it."""
 
 SAME = 1e-5
 """Directions whose signatures are shorter than this share of the longest are numerical noise."""
+
+
+UNSURE = 0.02
+"""Share by which the variance of the noise may be known wrongly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +129,20 @@ class Linear:
     retuned: Callable[[FloatArray], FloatArray]
     fitted: Callable[[FloatArray], FloatArray]
     kept: dict[Any, Any] = field(default_factory=dict)
+
+    def with_inputs_seen(self, chi2: float, explained: FloatArray) -> Linear:
+        """With no more left open by the inputs than a fit shows that leaves ``chi2``.
+
+        What other inputs change is part of what is left beyond noise, wherever the fit does not explain it.  They may
+        be as large as would leave no more than that even with the draw that leaves least.
+
+        explained  (n_rows, k) what the fit explains besides re-tuning
+        """
+        Q = basis(explained)
+        least = float(np.min(np.sum((self.wander - Q @ (Q.T @ self.wander)) ** 2, axis=0)))
+        n = int(np.count_nonzero(self.measured))
+        left = max(chi2 - n, 0.0) + UNSURE * n
+        return self if left >= least else replace(self, wander=np.sqrt(left / least) * self.wander, kept={})
 
     @property
     def measured(self) -> BoolArray:

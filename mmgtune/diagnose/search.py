@@ -237,6 +237,10 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
         known.outdate()
     given = _as_given(bench, point, hypotheses)
     fitted = Refitting(Refitter(bench, point, linear, known, given)).best(ranked, quick=False)
+    seen = _with_inputs_seen(linear, fitted)
+    if seen is not linear:  # with less left open more may be told, and other refits be worth their while
+        linear, ranked = seen, scores(seen, hypotheses)
+        fitted = Refitting(Refitter(bench, point, linear, known, given)).best(ranked, quick=False)
     refits = believable_first(fitted, bench.options.level)
     if refits and refits[0] is not fitted[0] and fitted[0].by_chance(bench.options.level):
         told = _in_a_form_told(refits, fitted[0], bench.options.level)
@@ -255,6 +259,15 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     rivals = rivals_among(refits) if refits else []
     accepted, reason = decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
+
+
+def _with_inputs_seen(linear: Linear, fitted: Sequence[Refit]) -> Linear:
+    """The linear problem of a look with no more left open by the inputs than the best refit shows."""
+    if not fitted or fitted[0].gain < 2.0 * ENOUGH:
+        return linear
+    best = fitted[0].hypothesis
+    explained = linear.columns_of(best.bases, best.groups) if best.by else linear.columns(linear.absent(best.names))
+    return linear.with_inputs_seen(fitted[0].point.chi2, explained)
 
 
 def _in_a_form_told(refits: Sequence[Refit], more: Refit, level: float) -> bool:

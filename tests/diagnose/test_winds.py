@@ -8,11 +8,13 @@ import pytest
 from mmgtune.diagnose import DiagnoseOptions, beliefs, winds
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause
+from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.inputs import DRAWS, changes
 from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.judging import _deformed
 from mmgtune.diagnose.leftover import leftover
 from mmgtune.diagnose.linear import linearise
+from mmgtune.diagnose.search import look
 from mmgtune.diagnose.winds import ALONG, other_winds
 from mmgtune.diagnose.workbench import TOLERANCE, make_workbench
 from mmgtune.effects import find_effect
@@ -131,6 +133,55 @@ def test_gusts_are_no_unknown_cause(sailed):
     assert point.chi2 / bench.problem.n_residuals > 1.2
     assert left.excess < 0.05 < left.left_open
     assert leftover(bench, base_fit(bench)).excess > 5.0
+
+
+def test_gusts_are_no_larger_than_is_seen(sailed):
+    bench, point, _ = wind_on(*sailed)
+    linear, n = linearise(bench, point), bench.problem.n_residuals
+    none = linear.residual[:, None][:, :0]
+    usual = float(np.mean(np.sum(linear.wander**2, axis=0)))
+    assert usual > 0.5 * n
+    seen = linear.with_inputs_seen(point.chi2, none)  # the wind was steady
+    left = np.sum(seen.wander**2, axis=0)
+    assert 0.0 < left.min() < 0.05 * n
+    np.testing.assert_allclose(
+        left / left.min(), np.sum(linear.wander**2, axis=0) / np.sum(linear.wander**2, axis=0).min()
+    )
+    np.testing.assert_array_equal(seen.signature, linear.signature)
+    assert linear.with_inputs_seen(n + usual, none) is linear
+    explained = linear.with_inputs_seen(point.chi2, linear.wander[:, :4])  # they were seen in none of what is explained
+    assert np.sum(explained.wander**2) > np.sum(seen.wander**2)
+    assert linear.with_inputs_seen(point.chi2, linear.wander) is linear
+
+
+@pytest.mark.parametrize(("gusts", "time_constant"), [(0.0, 4.0), (0.12, 0.0)])
+def test_a_cause_beside_a_wind_is_told(gusts, time_constant):
+    """A lag of the rudder is believed beside a steady wind, and nothing is that gusts left."""
+    profile = load_profile("suzaku")
+    rng = np.random.default_rng(5)
+    lag = {"steering-lag": {"time_constant": time_constant}} if time_constant else {}
+    ship = with_effects(profile, {"wind": {"measured": 1.0}, **lag}, "made")
+    made = []
+    for name in ("turn_p35", "turn_m20", "zigzag_20"):
+        trial = load_trials("suzaku").trials[name]
+        speed = np.full(trial.n_samples, 9.0)
+        for k in range(1, trial.n_samples):  # a sample a second, 250 m long
+            speed[k] = 9.0 + 0.965 * (speed[k - 1] - 9.0) + 0.262 * 9.0 * gusts * rng.standard_normal()
+        air = {"wind_speed": speed, "wind_dir": np.full(trial.n_samples, 40.0 * DEG)}
+        (motion,) = simulate_trials(ship, [replace(trial, extra=air)])
+        made.append(logged(trial, motion, rng))
+    options = DiagnoseOptions(
+        integrator="rk4", effects=("wind", "steering-lag", "memory", "governor-lag", "rudder-gain")
+    )
+    known = known_causes(profile, made, options)
+    bench = make_workbench(profile, made, options, [name for one in known for name in one.names])
+    base = base_fit(bench)
+    start = np.append(base.unit, bench.sub_box(WIND).to_unit(np.array([9.0, 40.0 * DEG])))
+    point = bench.refit((*base.names, *WIND), start[:, None], base.offsets)
+    step = look(bench, point, [one for one in known if one.tag != "wind"], first=False)
+    assert step.accepted == bool(lag)
+    if lag:
+        assert step.refits[0].hypothesis.tag == "steering-lag"
 
 
 def test_what_is_believed_beforehand_is_told():
