@@ -116,8 +116,11 @@ class _Ways:
         return _misfit(self.moved, steps, self.usable, self.window)
 
 
-def _ways(columns: Mapping[str, FloatArray]) -> _Ways | None:
-    """None where the ship hardly moves or nothing can be compared."""
+def _ways(columns: Mapping[str, FloatArray], longer: int = 1) -> _Ways | None:
+    """None where the ship hardly moves or nothing can be compared.
+
+    longer  times as long the windows are to be as white noise of the positions asks for
+    """
     dt = np.diff(columns["t"])
     moved = np.column_stack([np.diff(columns["x"]), np.diff(columns["y"])])
     psi, u, v = halfway(columns["psi"]), middle(columns["u"]), middle(columns["v"])
@@ -131,18 +134,19 @@ def _ways(columns: Mapping[str, FloatArray]) -> _Ways | None:
     longest = max(shortest, len(dt) // 4)
     if step <= 0.0 or 40.0 * noise > step * longest:
         return None
-    window = int(np.clip(np.ceil(40.0 * noise / step), shortest, longest))
+    window = min(longer * int(np.clip(np.ceil(40.0 * noise / step), shortest, longest)), longest)
     return _Ways(moved, psi, u, v, dt, usable, window)
 
 
-def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
+def position_misfits(columns: Mapping[str, FloatArray], longer: int = 1) -> dict[str, float]:
     """How badly the velocities explain the positions, by the way they are read: 0 perfectly, 1 not at all.
 
     The entry "" is the reading the format asks for.  A misfit is the median over windows of the distance between
-    measured and integrated displacement, over the displacement; windows are long enough for noise not to matter.
+    measured and integrated displacement, over the displacement; windows are long enough for white noise not to matter,
+    or so many times ``longer``.
     Empty where the ship hardly moves or nothing can be compared.  Needs t, x, y, psi, u and v, (n_samples,) each.
     """
-    ways = _ways(columns)
+    ways = _ways(columns, longer)
     if ways is None:
         return {}
     psi, v = ways.psi, ways.v

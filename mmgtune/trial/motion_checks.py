@@ -52,6 +52,9 @@ MENDED = {
 
 OF_MIDSHIP = "give positions of midship: [antenna] of the map says where they were measured"
 
+WANDER = 4
+"""Windows so many times longer are looked at where no reading fits: positions that wander miss by less in them."""
+
 FREER = 2.0
 """What the misfit counts of a reading that has two numbers to choose, among those that have none."""
 
@@ -228,6 +231,8 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
         place = f"if they are of a point about {aboard(lever.x, lever.y, 2)} of midship"
         fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
     fitting.sort()
+    if not fitting and position_misfits(trial.columns, WANDER).get("", 0.0) <= FITS:
+        return []
     fits = "they fit " + ", or ".join(words for _, words, _ in fitting)
     fix = "; or ".join(fix for _, _, fix in fitting)
     if not fitting:

@@ -15,6 +15,7 @@ from mmgtune import DiagnoseOptions, FitOptions, LeaveOutOptions, diagnose, fit,
 from mmgtune.importing import import_logs, load_map
 from mmgtune.profile import load_profile
 from mmgtune.trial import Trial, check_trial, check_trials, load_trials, oddities
+from mmgtune.trial.kinematics import FITS, position_misfits
 from mmgtune.trial.set_checks import odd_in_words
 
 from .made import DEG, made, said
@@ -66,6 +67,20 @@ def test_positions_of_one_axis(name: str, axis: str, factor: float) -> None:
         assert any(one and float(one[1]) == pytest.approx(factor, rel=0.02) for one in found) or any(
             "do not integrate to the positions" in one for one in warnings
         )
+
+
+def test_positions_that_wander_do_not_contradict_velocities() -> None:
+    """White noise of a receiver says little of how long one has to look: its errors fade over 20 s."""
+    trial = SUZAKU["turn_p35"]
+    rng = np.random.default_rng(2)
+    wander = np.zeros((2, trial.n_samples))
+    dt = float(np.diff(trial.t)[0])
+    for k in range(1, trial.n_samples):
+        wander[:, k] = np.exp(-dt / 20.0) * wander[:, k - 1] + 4.0 * np.sqrt(2.0 * dt / 20.0) * rng.standard_normal(2)
+    off = replace(trial, x=trial.x + wander[0], y=trial.y + wander[1])
+    assert position_misfits(off.columns)[""] > FITS
+    assert warnings_of(off) == []
+    assert any("do not integrate to the positions" in one for one in warnings_of(replace(off, u=1.3 * off.u)))
 
 
 def test_a_factor_that_noise_hides_from_the_whole_is_found_by_axis() -> None:
