@@ -192,7 +192,9 @@ class ByRun:
         if (beside := self._differ_in_step) is not None:
             told = self._in_step_in_words(beside)
             return f"The {subject} differed from {word} to {word}: {told}{self._doubted}"
-        sizes = [self.size(k)[0] for k in (shown or range(len(self.groups)))]
+        if not shown:
+            return f"The {subject} may have differed from {word} to {word}, in none for certain{self._doubted}"
+        sizes = [self.size(k)[0] for k in shown]
         others = len(self.groups) - len(shown)
         text = f"The {subject} differed from {word} to {word}: "
         if self._much_alike:
@@ -204,7 +206,7 @@ class ByRun:
         else:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
             where = [name_of(self.groups[k]) for k in shown]
-            text += f" in {listed(where, 4)}, and none for certain in the other {others}" if shown and others else ""
+            text += f" in {listed(where, 4)}, and none for certain in the other {others}" if others else ""
         return text + self._all_alike_towards() + self._within() + self._doubted
 
     @property

@@ -162,14 +162,21 @@ def _times(ratio: float) -> str:
 _CANNOT_NAME = "Something is wrong that this program cannot name."
 
 
+def _summed(answer: Answer) -> str:
+    """Causes of a sum by their tags: how many there are of one, and which have a value of each run."""
+    tags, by_run = [tag for tag, _ in answer.contributions], {cause.tag for cause in answer.causes if cause.runs}
+    several = {tag: f"{tags.count(tag)} times {tag}" if tags.count(tag) > 1 else tag for tag in tags}
+    return " + ".join(words + (" of each run" if tag in by_run else "") for tag, words in several.items())
+
+
 def _of_the_unknown(answer: Answer) -> Said:
     """That something is wrong, the best that is known of it, and how much is left."""
     tags = " + ".join(dict.fromkeys(cause.tag for cause in answer.causes))
     if answer.unclear and answer.tells_a_part:
-        summed = " + ".join(dict.fromkeys(tag for tag, _ in answer.contributions))
+        what = "this sum" if len(answer.contributions) > 1 else "this"
         best = (
-            f"The best partial explanation, {summed}, removes {_explained(answer)} of the error it was found on, but "
-            f"{answer.unclear}: this sum stands for something else, or for more than these trials can tell apart."
+            f"The best partial explanation, {_summed(answer)}, removes {_explained(answer)} of the error it was found "
+            f"on, but {answer.unclear}: {what} stands for something else, or for more than these trials can tell apart."
         )
         return Said(_CANNOT_NAME, best, answer.leading.sentence if answer.leading else "")
     if answer.tells_a_part and not answer.leftover.noticed:

@@ -321,6 +321,12 @@ def test_runs_in_which_it_shows_are_named():
     assert found.sentence.endswith(": 0.8 to 0.81 in run0 and run2, and none for certain in the other 2")
 
 
+def test_values_of_which_none_shows_are_not_told_to_differ():
+    """Gains of 1.028 to 1.034, none of them beyond doubt, were told to have "differed from run to run: 1"."""
+    found = of_loading((1.01, 0.99, 1.02, 1.0), 0.03, None)
+    assert found.sentence.endswith(" may have differed from run to run, in none for certain")
+
+
 def test_errors_beside_the_mean_are_free_of_what_all_have_in_common():
     names = ("effects.loading.draught@trial:a", "effects.loading.draught@trial:b", "effects.loading.trim")
     own, common = 0.01, 0.2
