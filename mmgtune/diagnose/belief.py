@@ -113,13 +113,13 @@ class Belief:
             return "its size is at the end of its range, and it leaves more than noise"
         bends = any(cause.runs for cause in self.causes)
         if len(brought) < 2:
-            if bends and self._faint and self.gain.share_removed < AT_ALL:
+            if bends and self._faint and self.gain.surely_removed < AT_ALL:
                 return NEXT_TO_NOTHING
             return not_told if self.gain.share_removed < TOLD else ""
         terms = [one for one in brought if not one.apart]
         if self.more or len(terms) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
-        if self._faint:
+        if self._faint and not self._told_by_one_log:
             return "all that they remove is little beside noise, and other sums would"
         if self.rest > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
@@ -189,6 +189,12 @@ class Belief:
         one_size = len(self.contributions) == 1 and not self.causes[0].runs
         nothing = not self.causes[0].sized if one_size else self._faint
         return nothing and bool(self.unclear)
+
+    @property
+    def _told_by_one_log(self) -> bool:
+        """Whether at most one of the causes is more than an error in the log of a single state, which shows in no other
+        and is told by itself."""
+        return sum(not cause.of_one_log for cause in self.causes) <= 1
 
     @property
     def _faint(self) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..displayed import Brief
 from ..documents import finite
-from ..effects import Effect
+from ..effects import Effect, SensorEffect
 from .by_run import ByRun
 from .contributions import Contribution
 from .intervals import Estimate
@@ -61,6 +61,12 @@ class Cause:
             <= (math.inf if one.high is None else one.high)
             for name, one in self._sizes.items()
         )
+
+    @property
+    def of_one_log(self) -> bool:
+        """Whether it is an error in the log of a single state, as the scale of a gyro is."""
+        names = [name.rpartition(".")[2] for name in self.estimates]
+        return isinstance(self.effect, SensorEffect) and len(self.effect.shown_in(names)) == 1
 
     @property
     def _sizes(self) -> dict[str, Estimate]:

@@ -75,6 +75,12 @@ SHOWS, OWN = 0.2, 100.0
 """Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
 over what the others' form may leave: a cause that removes as much in any channel is no matter of that form."""
 
+SURELY = 3.0
+"""Half-widths of its interval from none from which a cause is there, whatever little it changes, beside exact ones."""
+
+MOST_RUNS = 0.5
+"""A cause that does harm tells more than this share of the held-out runs worse: a sum may be decided by one run."""
+
 
 @dataclass(frozen=True)
 class Contribution:
@@ -92,6 +98,9 @@ class Contribution:
     slight   whether it is the only cause, of a size that is not worth reporting, and unnoticed when left out
     moves    share of its size by which another cause would be off, and told wrong, without it
     keeps_inertia whether without it mass or inertia would have to be what no ship's are, which with it they are not
+    good     as ``share``, of the channels alone that it can change: on others it acts by what is fitted beside it;
+             infinite where it tells no more than half of the held-out runs worse; None for ``share``
+    sure     whether its size is far from none beside others of exact form, which leave nothing that looks like it
     of_hull  share of what it explains that a hull further off than believed would explain; see ``explained_by_hull``
 
     Where ``seen`` alone shows that it is no trace, the other fields are not worked out: NaN and empty.
@@ -110,6 +119,8 @@ class Contribution:
     moves: float = 0.0
     keeps_inertia: bool = False
     of_hull: float = 0.0
+    good: float | None = None
+    sure: bool = False
 
     @property
     def like_hull(self) -> bool:
@@ -123,7 +134,8 @@ class Contribution:
         Where it shows in a channel of its own, errors in the form of larger causes may add as much in other channels as
         it removes in that one.
         """
-        return self.channels is not None and self.share <= (-HARDLY_SEEN if self.stands_out else 0.0)
+        good = self.share if self.good is None else self.good
+        return self.channels is not None and good <= (-HARDLY_SEEN if self.stands_out else 0.0)
 
     @property
     def stands_out(self) -> bool:
@@ -162,7 +174,7 @@ class Contribution:
     @property
     def _needed(self) -> bool:
         """Whether another cause, or mass and inertia, would be told wrong without it."""
-        return self.moves >= MOVES or self.keeps_inertia
+        return self.moves >= MOVES or self.keeps_inertia or self.sure
 
     @property
     def _shown(self) -> float:
@@ -295,8 +307,22 @@ def _weighed(
     for k in asked:
         moves = _moved(bench, found, found.causes[k], fewer[k], sizes)
         keeps = plausible and bool(unlike_any(retuned(bench, fewer[k])))
-        weighed[k] = replace(weighed[k], moves=moves, keeps_inertia=keeps)
+        sure = _is_sure(bench, found, found.causes[k], sizes)
+        weighed[k] = replace(weighed[k], moves=moves, keeps_inertia=keeps, sure=sure)
     return weighed
+
+
+def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[str, Estimate]) -> bool:
+    """Whether a cause of a single size is far from none, beside others whose formulas are exact."""
+    others = [one.effect for one in found.causes if one is not cause]
+    plain = len(cause.names) == 1 and not (cause.by or cause.effect.one_of_many)
+    rough = any(one.rough or one.one_of_many or bench.believed.form_of(one) for one in others)
+    if not plain or rough or size_of(bench, found.final, cause) < WORTH:
+        return False
+    size, null = sizes[cause.names[0]], cause.effect.parameters[cause.variant[0]].null
+    if size.low is None or size.high is None or not math.isfinite(null):
+        return False
+    return abs(size.value - null) > SURELY * 0.5 * (size.high - size.low)
 
 
 def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, sizes: Mapping[str, Estimate]) -> float:
@@ -355,15 +381,18 @@ class _HeldOut:
     errors   (3, 6) squares by channel in variances of white noise
     counts   (6,) samples
     changes  the largest of each index by the cause
+    worse    of each part that was left out, whether it is told worse with the cause
     """
 
     errors: FloatArray = field(default_factory=lambda: np.zeros((3, len(STATES))))
     counts: FloatArray = field(default_factory=lambda: np.zeros(len(STATES)))
     changes: dict[str, float] = field(default_factory=dict)
+    worse: list[bool] = field(default_factory=list)
 
     def add(self, errors: FloatArray, counts: FloatArray, changes: Mapping[str, Sequence[float]]) -> None:
         """Further trials."""
         self.errors, self.counts = self.errors + errors, self.counts + counts
+        self.worse.append(bool(errors[1].sum() < errors[2].sum()))
         for name, those in changes.items():
             if those:
                 self.changes[name] = max(self.changes.get(name, 0.0), *those)
@@ -401,7 +430,13 @@ def _of(
     share = float(removed[1]) / scale if scale > 0.0 else 1.0
     whole = takes_the_rest(bench, found, cause, fewer)
     beside_runs = any(one.by for one in found.causes if one is not cause)
-    return Contribution(seen, share, channels, changes, form, own, whole, bool(cause.by), beside_runs)
+    good = share
+    if np.mean(held_out.worse) <= MOST_RUNS:
+        good = math.inf
+    elif isinstance(cause.effect, SensorEffect) and scale > 0.0:
+        shown = [STATES.index(name) for name in cause.effect.shown_in(cause.variant)]
+        good = float(np.sum((errors[1] - errors[2])[shown])) / scale
+    return Contribution(seen, share, channels, changes, form, own, whole, bool(cause.by), beside_runs, good=good)
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:

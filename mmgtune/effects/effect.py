@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
@@ -13,6 +13,9 @@ from ..inputs import Role
 from ..physics.quantities import KNOWN, Force, Lanes, State, Surroundings
 from ..units import DEG
 from .visited import Visited
+
+MOVING, TRIED = State(x=1.0, y=2.0, psi=0.3, u=1.0, v_m=-0.2, r=0.1), 0.01
+"""A ship that moves every way [m, rad, m/s, rad/s], and how far from its null a sensor's parameter is tried on her."""
 
 
 class Scale(NamedTuple):
@@ -378,6 +381,13 @@ class SensorEffect(Effect):
     place = "sensor"
     function: SensorFunction
     inverse: SensorFunction
+
+    def shown_in(self, parameters: Collection[str]) -> tuple[str, ...]:
+        """States whose logs parameters change while the ship moves alike."""
+        null = {name: one.null for name, one in self.parameters.items()}
+        off = {name: null[name] + TRIED for name in parameters}
+        logs = [self.function(MOVING, self.params(**values)) for values in (null, {**null, **off})]
+        return tuple(name for name in State._fields if getattr(logs[0], name) != getattr(logs[1], name))
 
 
 class FilterFunction(Protocol):

@@ -1,6 +1,7 @@
 """Traces and what trials must visit: what is there by the statistics and what a user may be told."""
 
 import json
+import math
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,10 +15,10 @@ from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose, saying
 from mmgtune.diagnose import contributions as contributed
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause, Trace
-from mmgtune.diagnose.contributions import Contribution, removed_by, set_aside, squares, takes_the_rest
+from mmgtune.diagnose.contributions import Contribution, _is_sure, removed_by, set_aside, squares, takes_the_rest
 from mmgtune.diagnose.doubted import Leading
 from mmgtune.diagnose.gain import BAND, expected, held_out
-from mmgtune.diagnose.hypotheses import known_causes
+from mmgtune.diagnose.hypotheses import Hypothesis, known_causes
 from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.judging import Judge
 from mmgtune.diagnose.leftover import Leftover, _slow
@@ -103,6 +104,52 @@ def test_what_would_let_another_cause_err_is_noticed():
     assert not replace(trace, moves=0.15).little
     assert replace(trace, moves=0.15, share=-0.01).unnoticed
     assert replace(trace, moves=0.15, of_hull=0.95).unnoticed
+
+
+def test_what_is_surely_there_beside_exact_causes_is_noticed():
+    """A rudder that moved by 1.07 times its order was a trace beside a current, as if a current could look like it."""
+    trace = Contribution(0.0009, 0.0004, {"psi": 1.3}, {"advance_m": 0.02})
+    assert trace.unnoticed
+    assert not replace(trace, sure=True).unnoticed
+    assert not replace(trace, sure=True).little
+    assert replace(trace, sure=True, share=-0.01).unnoticed
+
+
+@pytest.mark.parametrize(
+    ("tag", "variant", "beside", "size", "half", "by", "sure"),
+    [
+        ("rudder-gain", ("factor",), "current", 1.07, 0.02, "", True),
+        ("rudder-gain", ("factor",), "current", 1.07, 0.03, "", False),  # its interval nearly reaches none
+        ("rudder-gain", ("factor",), "current", 1.07, 0.02, "trial", False),
+        ("rudder-gain", ("factor",), "current", 1.0002, 0.00001, "", False),  # not worth speaking of
+        ("rudder-gain", ("starboard", "port"), "current", 1.07, 0.02, "", False),
+        ("rudder-gain", ("factor",), "wave-drift", 1.07, 0.02, "", False),  # what waves leave may look like it
+        ("rudder-gain", ("factor",), "wind", 1.07, 0.02, "", False),
+        ("rudder-stall", ("angle",), "current", 0.5, 0.02, "", False),  # none is at infinity
+    ],
+)
+def test_a_cause_is_surely_there_three_half_widths_from_none_beside_exact_ones(
+    tag, variant, beside, size, half, by, sure
+):
+    other = find_effect(beside)
+    cause, other = Hypothesis(find_effect(tag), variant, by), Hypothesis(other, other.variants[0])
+    trials = [load_trials("suzaku").trials["turn_p35"]]
+    bench = make_workbench(load_profile("suzaku"), trials, DiagnoseOptions(), [*cause.bases, *other.bases])
+    names = cause.names if not by else ()
+    unit = bench.sub_box(names[:1]).to_unit(np.array([size])) if names else np.zeros(0)
+    final = SimpleNamespace(names=names[:1], unit=unit)
+    sizes = {name: Estimate(name, size, size - half, size + half, 0.5 * half) for name in names}
+    assert _is_sure(bench, SimpleNamespace(final=final, causes=[cause, other]), cause, sizes) == sure
+
+
+def test_harm_is_that_of_most_runs_and_of_the_channels_that_it_can_change():
+    """A gyro that was off by 12 standard errors was a trace: without it positions were told better, which it is not
+    in."""
+    one = Contribution(0.0002, -0.0004, {"r": 0.4, "x": -3.0}, {"advance_m": 0.0}, moves=0.2)
+    assert one.harmful
+    assert not replace(one, good=0.0003).harmful
+    assert replace(one, good=-0.0003).harmful
+    assert not replace(one, good=math.inf).unnoticed
 
 
 def test_what_mass_and_inertia_need_to_be_a_ships_is_noticed():
@@ -408,12 +455,14 @@ def sum_of(
     bent="",
     before=3.0,
     of_traces=0.0,
+    of_one_log=0,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     leftover = SimpleNamespace(structured=structured, unknown=left or 0.2 * structured)
     return SimpleNamespace(
         causes=[
-            SimpleNamespace(runs=k < by_run, sized=sized, tag="wind", at_ends=at_ends) for k in range(len(brought))
+            SimpleNamespace(runs=k < by_run, sized=sized, tag="wind", at_ends=at_ends, of_one_log=k < of_one_log)
+            for k in range(len(brought))
         ],
         contributions=list(zip(tags[: len(brought)], brought, strict=True)),
         groups=groups,
@@ -467,7 +516,13 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, before=1.12), ""),
         (sum_of(CLEAR, before=1.03), ""),
         (sum_of(CLEAR, before=1.03, by_run=1), ""),
-        (sum_of(CLEAR, before=1.03, by_run=1, removed=0.01), "next to nothing"),  # a receiver that wanders, by run
+        (sum_of(CLEAR, CLEAR, before=1.09, of_one_log=1), ""),  # a gyro, which is told by itself, and one more
+        (sum_of(CLEAR, CLEAR, CLEAR, before=1.09, of_one_log=1), "little beside noise"),
+        (sum_of(CLEAR, before=1.03, by_run=1, low=-0.3), "next to nothing"),  # 95 %, -33 to 98 %, with nothing there
+        (
+            sum_of(CLEAR, before=1.03, by_run=1, removed=0.01, low=-0.3),
+            "next to nothing",
+        ),  # a receiver that wanders, by run
         (sum_of(CLEAR, SMALL_BUT_CLEAR, remains=True), "on test trials"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=2), "from run to run"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=1), ""),
@@ -498,6 +553,7 @@ GROUP = (("a", "b"),)
 )
 def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
     one._faint = Diagnosis._faint.fget(one)
+    one._told_by_one_log = Diagnosis._told_by_one_log.fget(one)
     found = Diagnosis.unclear.fget(one)
     assert (found == "") == (said == "")
     assert said in found
@@ -515,6 +571,7 @@ def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
 def test_what_is_little_beside_noise_may_be_chance(one, chance):
     """Beside noise alone two causes that were not believed made it an error of less than none that nobody knows."""
     one._faint = Diagnosis._faint.fget(one)
+    one._told_by_one_log = Diagnosis._told_by_one_log.fget(one)
     one.unclear = Diagnosis.unclear.fget(one)
     assert Diagnosis.is_chance.fget(one) == chance
 
@@ -559,6 +616,7 @@ def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_
 )
 def test_what_is_beyond_all_takes_three_terms_that_are_not_believed(one, beyond):
     one._faint = Diagnosis._faint.fget(one)
+    one._told_by_one_log = Diagnosis._told_by_one_log.fget(one)
     one.unclear = Diagnosis.unclear.fget(one)
     assert Diagnosis.is_beyond_all.fget(one) == beyond
 
@@ -763,7 +821,7 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     seen = SimpleNamespace(
         between=(),
         verdict="unexplained",
-        causes=(SimpleNamespace(tag="antenna"),),
+        causes=(SimpleNamespace(tag="antenna", runs=None),),
         contributions=(("antenna", None), ("hull-term", None)),
         explained_share=0.99,
         together=SimpleNamespace(sentence="All trials together say more."),
@@ -778,6 +836,13 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     assert said.why.startswith("The best partial explanation, antenna + hull-term, removes 99 %")
     assert said.sentence == f"{said.first} {said.why} {most.sentence} All trials together say more."
     seen.leading, seen.together, seen.contradicted = None, None, "Logs contradict each other, approx. by 3 deg."
+    seen.causes += (SimpleNamespace(tag="wind", runs="one each"),)
+    seen.contributions += (("hull-term", None), ("wind", None))
+    assert ", antenna + 2 times hull-term + wind of each run, removes" in saying.said(seen).why
+    assert ": this sum stands for" in saying.said(seen).why
+    seen.contributions = seen.contributions[:1]
+    assert ", antenna, removes" in saying.said(seen).why
+    assert ": this stands for" in saying.said(seen).why
     said = saying.said(seen)
     assert said.headline == seen.contradicted
     assert said.explained.startswith("Something is wrong that this program cannot name. The best")

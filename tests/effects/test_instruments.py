@@ -282,3 +282,21 @@ def scale():
     from mmgtune.profile import scale_of
 
     return scale_of(load_profile("suzaku"))
+
+
+@pytest.mark.parametrize(
+    ("tag", "parameters", "logs"),
+    [
+        ("gyro-bias", ["rate"], ("r",)),
+        ("gyro-scale", ["factor"], ("r",)),
+        ("log-zero", ["ahead"], ("u",)),
+        ("log-zero", ["abeam"], ("v_m",)),
+        ("log-misalignment", ["angle"], ("u", "v_m")),
+        ("heading-bias", ["alone"], ("psi",)),
+        ("compass-deviation", ["sine_alone", "cosine_alone"], ("psi",)),
+        ("antenna", ["x", "y"], ("x", "y", "u", "v_m")),
+        ("antenna", ["x_alone"], ("x", "y")),
+    ],
+)
+def test_logs_in_which_an_error_of_a_sensor_shows(tag, parameters, logs):
+    assert find_effect(tag).shown_in(parameters) == logs
