@@ -313,10 +313,12 @@ def _weighed(
 
 
 def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[str, Estimate]) -> bool:
-    """Whether a cause of a single size is far from none, beside others whose formulas are exact."""
-    others = [one.effect for one in found.causes if one is not cause]
+    """Whether a cause of a single size is far from none, beside others whose formulas are exact and whose values are
+    the same in all runs: others bend to what is left."""
+    others = [one for one in found.causes if one is not cause]
     plain = len(cause.names) == 1 and not (cause.by or cause.effect.one_of_many)
-    rough = any(one.rough or one.one_of_many or bench.believed.form_of(one) for one in others)
+    formed = any(one.effect.rough or one.effect.one_of_many or bench.believed.form_of(one.effect) for one in others)
+    rough = formed or any(one.by for one in others)
     if not plain or rough or size_of(bench, found.final, cause) < WORTH:
         return False
     size, null = sizes[cause.names[0]], cause.effect.parameters[cause.variant[0]].null

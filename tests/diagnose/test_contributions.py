@@ -118,6 +118,7 @@ def test_what_is_surely_there_beside_exact_causes_is_noticed():
 @pytest.mark.parametrize(
     ("tag", "variant", "beside", "size", "half", "by", "sure"),
     [
+        ("log-zero", ("abeam",), "current by trial", 0.046, 0.0096, "", False),  # that was of a part of the sea
         ("rudder-gain", ("factor",), "current", 1.07, 0.02, "", True),
         ("rudder-gain", ("factor",), "current", 1.07, 0.03, "", False),  # its interval nearly reaches none
         ("rudder-gain", ("factor",), "current", 1.07, 0.02, "trial", False),
@@ -131,8 +132,9 @@ def test_what_is_surely_there_beside_exact_causes_is_noticed():
 def test_a_cause_is_surely_there_three_half_widths_from_none_beside_exact_ones(
     tag, variant, beside, size, half, by, sure
 ):
-    other = find_effect(beside)
-    cause, other = Hypothesis(find_effect(tag), variant, by), Hypothesis(other, other.variants[0])
+    other_tag, _, other_by = beside.partition(" by ")
+    other = find_effect(other_tag)
+    cause, other = Hypothesis(find_effect(tag), variant, by), Hypothesis(other, other.variants[0], other_by)
     trials = [load_trials("suzaku").trials["turn_p35"]]
     bench = make_workbench(load_profile("suzaku"), trials, DiagnoseOptions(), [*cause.bases, *other.bases])
     names = cause.names if not by else ()
