@@ -394,7 +394,7 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
     wrong when the cause was found may have bent them, or made them differ from run to run.  Or another form of the same
     effect that has fewer: one rate of the rudder for two that are alike."""
     for cause in list(found.causes):
-        if (plainer := _in_plainer_form(bench, found, cause)) is not None:
+        if (plainer := _in_plainer_form(bench, found, cause, hypotheses)) is not None:
             found.causes[found.causes.index(cause)], found.final = plainer
             continue
         special = [one for one in hypotheses if one.by in (cause.by, "") and cause.holds(one)]
@@ -411,21 +411,27 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
                 break
 
 
-def _in_plainer_form(bench: Workbench, found: Found, cause: Hypothesis) -> tuple[Hypothesis, Point] | None:
+def _in_plainer_form(
+    bench: Workbench, found: Found, cause: Hypothesis, hypotheses: Sequence[Hypothesis]
+) -> tuple[Hypothesis, Point] | None:
     """A form of the effect of a cause with fewer parameters, none of them among its own, that does nearly as well."""
     step = step_of(found, cause)
-    refits = step.refits if step is not None else []
-    forms = [r for r in refits if r.hypothesis.effect is cause.effect and r.hypothesis.by == cause.by]
-    others = [r for r in forms if not set(r.hypothesis.names) & set(cause.names)]
-    plainer = [r for r in others if len(r.hypothesis.names) < len(cause.names)]
-    if not plainer:
+    forms = [one for one in hypotheses if one.effect is cause.effect and one.by == cause.by]
+    plainer = [one for one in forms if len(one.names) < len(cause.names) and not set(one.names) & set(cause.names)]
+    if step is None or not plainer:
         return None
+    refits = {refit.hypothesis.names: refit for refit in step.refits}
+    values = dict(zip(found.final.names, found.final.unit, strict=True))
+    mean = float(np.mean([values[name] for name in cause.names]))
     fewer = without(bench, found.final, cause)
-    for refit in sorted(plainer, key=lambda one: len(one.hypothesis.names)):
-        other = _with(bench, fewer, refit)
-        saved = (len(cause.names) - len(refit.hypothesis.names)) * bench.price
-        if (other.chi2 - found.final.chi2) / refit.score.inflation < saved + ENOUGH:
-            return refit.hypothesis, other
+    for one in sorted(plainer, key=lambda one: len(one.names)):
+        refit = refits.get(one.names)
+        start = np.full(len(one.names), mean)  # where it was not looked at: one rate of the rudder for two
+        other = _with(bench, fewer, refit) if refit else _exchanged(bench, fewer, (), one.names, start)
+        saved = (len(cause.names) - len(one.names)) * bench.price
+        inflation = (refit or step.refits[0]).score.inflation
+        if (other.chi2 - found.final.chi2) / inflation < saved + ENOUGH:
+            return one, other
     return None
 
 
