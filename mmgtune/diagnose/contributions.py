@@ -173,7 +173,7 @@ class Contribution:
 
     @property
     def _needed(self) -> bool:
-        """Whether another cause, or mass and inertia, would be told wrong without it."""
+        """Whether another cause, or mass and inertia, would be told wrong without it, or it is surely there."""
         return self.moves >= MOVES or self.keeps_inertia or self.sure
 
     @property
@@ -435,8 +435,8 @@ def _of(
     good = share
     if np.mean(held_out.worse) <= MOST_RUNS:
         good = math.inf
-    elif isinstance(cause.effect, SensorEffect) and scale > 0.0:
-        shown = [STATES.index(name) for name in cause.effect.shown_in(cause.variant)]
+    elif isinstance(cause.effect, SensorEffect) and scale > 0.0 and (logs := cause.effect.shown_in(cause.variant)):
+        shown = [STATES.index(name) for name in logs]
         good = float(np.sum((errors[1] - errors[2])[shown])) / scale
     return Contribution(seen, share, channels, changes, form, own, whole, bool(cause.by), beside_runs, good=good)
 
