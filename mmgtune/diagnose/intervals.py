@@ -89,9 +89,8 @@ def _told(bench: Workbench, point: Point, names: tuple[str, ...]) -> tuple[Float
     """Information of the residuals on the free parameters, all else re-tuned: the triangle R of their columns, the
     covariance of noise along these, and the step of each column in the unit cube."""
     linear = linearise(bench, point, apart=names)
-    columns = linear.columns(names)
-    Q, R = np.linalg.qr(columns)
-    by_block, by_trial = linear.with_inputs_seen(point.chi2, columns).chance(Q)
+    Q, R = np.linalg.qr(linear.columns(names))
+    by_block, by_trial = linear.chance(Q)
     told = len(R)  # directions of residuals: fewer than columns where there are fewer residuals
     memory = max(1.0, float(np.sum(by_block**2)) / told)
     noise = memory * np.eye(told) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
