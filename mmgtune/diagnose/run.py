@@ -42,7 +42,7 @@ from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
 from .refit import ENOUGH, Refit
 from .result import Diagnosis
-from .search import Found, doubtful_beginning, search
+from .search import Found, against_its_kin, doubtful_beginning, search
 from .together import Together
 from .unseen import Unseen
 from .voyages import Choice, looked_at, with_hull_held
@@ -223,10 +223,11 @@ def _of_the_better_beginning(
     hypotheses: Sequence[Hypothesis],
     hooks: Hooks,
 ) -> tuple[Diagnosis, Found]:
-    """The answer of a search; where that is unexplained, and another cause may have been the one to begin with, of one
-    without the first, if its causes are believed and leave less."""
+    """The answer of a search; where that is unexplained or has a cause beside one that acts like it, and another may
+    have been the one to begin with, of one without the first, if its causes are believed and fit better."""
     result, found = answered(hypotheses, ())
-    begun = doubtful_beginning(bench, found) if result.verdict == "unexplained" and not hooks.stop() else []
+    doubted = result.verdict == "unexplained" or (result.names_causes and against_its_kin(found))
+    begun = doubtful_beginning(bench, found) if doubted and not hooks.stop() else []
     if not begun:
         return result, found
     first = begun[0].hypothesis.tag
@@ -240,12 +241,14 @@ def _of_the_better_beginning(
 
 
 def _fits_better(bench: Workbench, one: Found, other: Found) -> bool:
-    """Whether the causes of one search leave less than those of another, by the noise as known now."""
-    chi2 = [
-        bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0, spreads=point.spreads).chi2
-        for point in (one.final, other.final)
-    ]
-    return chi2[0] < chi2[1] - ENOUGH
+    """Whether the causes of one search leave less than those of another, by the noise as known now, the price of their
+    sizes included."""
+    costs = []
+    for found in (one, other):
+        point = found.final
+        left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0, spreads=point.spreads)
+        costs.append(left.chi2 + bench.price * sum(len(cause.names) for cause in found.causes))
+    return costs[0] < costs[1] - ENOUGH
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:

@@ -180,8 +180,9 @@ def search(
 def doubtful_beginning(bench: Workbench, found: Found) -> list[Refit]:
     """Refits of the first cause where another may have been the one to begin with; none else.
 
-    That is so where a part of its form ended at the end of its range, so that its force is that of others together, and
-    where another effect did as well at the first look, be what was begun with a cause still or not.
+    That is so where a part of its form ended at the end of its range, so that its force is that of others together,
+    where another effect did as well at the first look, be what was begun with a cause still or not, and where a cause
+    that acts much like it was found beside it: the two may push against each other in the place of the second alone.
     """
     looks = [step.refits for step in found.steps if step.accepted and step.refits]
     read_otherwise = found.held is not None or found.finer_step is not None  # since the first look
@@ -190,11 +191,17 @@ def doubtful_beginning(bench: Workbench, found: Found) -> list[Refit]:
     first, unit = found.causes[0], dict(zip(found.final.names, found.final.unit, strict=True))
     best, *others = looks[0]
     tag = ""
-    if any(not 0.0 < unit.get(name, 0.5) < 1.0 for name in bench.believed.form_of(first.effect)):
+    at_end = any(not 0.0 < unit.get(name, 0.5) < 1.0 for name in bench.believed.form_of(first.effect))
+    if at_end or against_its_kin(found):
         tag = first.tag
     elif any(one.hypothesis.tag != best.hypothesis.tag and abs(one.gain / best.gain - 1.0) < AS_WELL for one in others):
         tag = best.hypothesis.tag
     return [one for refits in looks for one in refits if one.hypothesis.tag == tag]
+
+
+def against_its_kin(found: Found) -> bool:
+    """Whether a cause was found that acts much like the first."""
+    return any(cause.tag in first.effect.akin for first in found.causes[:1] for cause in found.causes[1:])
 
 
 def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
