@@ -45,7 +45,6 @@ their box are not allowed to imitate it."""
 SAME = 1e-5
 """Directions whose signatures are shorter than this share of the longest are numerical noise."""
 
-
 UNSURE = 0.02
 """Share by which the variance of the noise may be known wrongly."""
 

@@ -42,7 +42,7 @@ from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
 from .refit import ENOUGH, Refit
 from .result import Diagnosis
-from .search import Found, against_its_kin, doubtful_beginning, search
+from .search import Found, against_its_kin, doubtful_beginning, price_of, search
 from .together import Together
 from .unseen import Unseen
 from .voyages import Choice, looked_at, with_hull_held
@@ -241,13 +241,13 @@ def _of_the_better_beginning(
 
 
 def _fits_better(bench: Workbench, one: Found, other: Found) -> bool:
-    """Whether the causes of one search leave less than those of another, by the noise as known now, the price of their
-    sizes included."""
+    """Whether the causes of one search leave less than those of another, by the noise as known now, their prices
+    included."""
     costs = []
     for found in (one, other):
         point = found.final
         left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0, spreads=point.spreads)
-        costs.append(left.chi2 + bench.price * sum(len(cause.names) for cause in found.causes))
+        costs.append(left.chi2 + sum(price_of(bench, found, cause) for cause in found.causes))
     return costs[0] < costs[1] - ENOUGH
 
 

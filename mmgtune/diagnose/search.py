@@ -367,7 +367,7 @@ def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis
     """Drop causes of those asked for that others explain."""
     for hypothesis in list(asked):
         fewer = without(bench, found.final, hypothesis)
-        if fewer.chi2 - found.final.chi2 < _price(bench, found, hypothesis) + ENOUGH:
+        if fewer.chi2 - found.final.chi2 < price_of(bench, found, hypothesis) + ENOUGH:
             found.causes.remove(hypothesis)
             found.final = fewer
 
@@ -409,7 +409,7 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
             fewer = _as_special(bench, found.final, cause, one)
             saved = (len(cause.names) - len(one.names)) * bench.price
             if one.by != cause.by:
-                saved = _price(bench, found, cause) - len(one.names) * bench.price
+                saved = price_of(bench, found, cause) - len(one.names) * bench.price
             rise, fall = fewer.chi2 - found.final.chi2, found.base.chi2 - found.final.chi2
             hardly = rise < min(ALIKE * fall, HARDLY * bench.problem.n_residuals)
             if rise < saved + ENOUGH or (one.by != cause.by and hardly):
@@ -450,7 +450,7 @@ def step_of(found: Found, cause: Hypothesis) -> Step | None:
     return next(iter([*as_it_is, *of_more]), None)
 
 
-def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
+def price_of(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
     """What a cause must explain at least: its share by BIC, or what it was charged when it was found."""
     paid = [r.cost for step in found.steps for r in step.refits[:1] if r.hypothesis == hypothesis and hypothesis.by]
     return paid[0] if paid else len(hypothesis.names) * bench.price

@@ -78,7 +78,7 @@ def test_of_two_searches_that_leave_as_much_the_one_of_fewer_sizes_fits_better(l
 
     def found(chi2, n_names):
         point = SimpleNamespace(names=(), unit=np.zeros(0), offsets=None, spreads={}, chi2=chi2)
-        return SimpleNamespace(final=point, causes=[SimpleNamespace(names=("one",) * n_names)])
+        return SimpleNamespace(final=point, causes=[SimpleNamespace(names=("one",) * n_names, by="")], steps=[])
 
     chi2 = iter([left, 1000.0])
     bench = SimpleNamespace(price=9.0, refit=lambda *_, **__: SimpleNamespace(chi2=next(chi2)))
