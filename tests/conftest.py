@@ -40,16 +40,25 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(times.Writer())
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One more than there are cores: some tests wait for what they have started."""
+    return 1 + (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+
+
 @pytest.hookimpl(tryfirst=True)  # before the plugin of the workers reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that share what took long stay together, in one worker; what takes longest comes first, so that no worker
-    is left with it at the end.  What takes long, or begins with what does, is marked slow.
+    is left with it at the end.  What takes long, or begins with what does, is marked slow; cases of a test that are not
+    those of every day are marked long.
 
     Tests with a fixture of their module stay together, and those that a marker ``xdist_group(name)`` says.
     """
     taken = times.read()
     together: dict[str, list[pytest.Item]] = {}
     for item in items:
+        if (daily := item.get_closest_marker("daily")) and not any(part in _case(item) for part in daily.args):
+            item.add_marker("long")
         if item.get_closest_marker("browser"):  # once more where chromium was stuck
             item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=["TargetClosedError", "TimeoutError"]))
         shared, file = _shared(item), times.file_of(item.nodeid)
@@ -64,6 +73,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         names = dict.fromkeys(name for item in tests for name in (item.nodeid, times.file_of(item.nodeid)))
         return sum(taken.get(name, 0.0) for name in names)  # in one order: all workers must find the same
 
+    if len(items) > MANY:
+        _every_test_has_a_daily_case(items)
     items[:] = [item for tests in sorted(together.values(), key=seconds, reverse=True) for item in tests]
 
 
@@ -81,6 +92,19 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw0" and len(session.items) > MANY:
         model = Model(with_all_effects(load_profile("suzaku")))
         get_backend("compiled").run(model, model.matrix(), turn(model, 20.0, 1.0))
+
+
+def _every_test_has_a_daily_case(items: list[pytest.Item]) -> None:
+    """None whose parameters were renamed goes over to the long ones as a whole."""
+    asked = {item.nodeid.partition("[")[0] for item in items if item.get_closest_marker("daily")}
+    daily = {item.nodeid.partition("[")[0] for item in items if not item.get_closest_marker("long")}
+    if asked - daily:
+        raise pytest.UsageError(f"no case is that of every day: {', '.join(sorted(asked - daily))}")
+
+
+def _case(item: pytest.Item) -> str:
+    """Which case of a test with parameters it is, in brackets."""
+    return f"[{item.callspec.id}]" if isinstance(item, pytest.Function) and hasattr(item, "callspec") else ""
 
 
 def _shared(item: pytest.Item) -> set[str]:

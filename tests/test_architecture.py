@@ -45,6 +45,7 @@ def test_the_contracts_are_kept():
     assert code == 0, said
 
 
+@pytest.mark.daily("mmgtune.model is", "import numpy", "astrology")
 @pytest.mark.parametrize(
     ("module", "line", "wanted"),
     [

@@ -181,6 +181,7 @@ def test_words_that_name_no_trial_and_sets_without_any(suzaku, data):
         compare_models([], data)
 
 
+@pytest.mark.long
 def test_the_command(tmp_path, data):
     for trial in data.trials.values():
         write_trial(trial, tmp_path / "log" / f"{trial.id}.parquet")

@@ -43,6 +43,7 @@ def _on_compiled(model, theta, watches):
     order_by_order(model, theta, watches, get_backend("compiled"))
 
 
+@pytest.mark.daily("plain", "_on_compiled")
 @pytest.mark.parametrize("way", [step_by_step, _on_compiled])
 @pytest.mark.parametrize("effects", [{}, TOGETHER], ids=["plain", "every effect"])
 def test_lanes_side_by_side_are_those_alone(effects, way):
@@ -84,6 +85,7 @@ HELMSMEN = (
 )
 
 
+@pytest.mark.daily("plain")
 @pytest.mark.parametrize("effects", [{}, TOGETHER], ids=["plain", "every effect"])
 def test_order_by_order_is_step_by_step(effects):
     """On the compiled simulator the inputs and motions are those of stepping, whatever steps and lengths they have."""
@@ -136,6 +138,7 @@ def test_a_simulator_that_would_have_to_be_compiled_is_not_asked(monkeypatch):
     assert np.isfinite(run_manoeuvre(model, TurningOrder(0.5), longest=30.0).states).all()
 
 
+@pytest.mark.daily("Straight")
 @pytest.mark.parametrize("order", HELMSMEN)
 def test_an_order_sailed_twice_is_the_same_twice(order):
     """What a helmsman remembers is of one simulation."""

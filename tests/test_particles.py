@@ -172,6 +172,7 @@ def test_a_fit_leaves_them_beside_its_profile(tmp_path):
     assert foretold.indices()["runs"] == bands["predicted"]["runs"]
 
 
+@pytest.mark.long
 def test_the_command_writes_them_and_others_take_them(tmp_path):
     write_trial(load_trials("suzaku").trials["turn_p35"], tmp_path / "one.parquet")
     ended = run("posterior", "-t", "one.parquet", "--particles", "20", "--out", "bands", "--json", cwd=tmp_path)
@@ -202,6 +203,7 @@ def test_the_command_writes_them_and_others_take_them(tmp_path):
     assert "bands" not in alone["runs"][0]
 
 
+@pytest.mark.long
 def test_validate_scores_their_bands_as_compare_does(particles, tmp_path):
     save_particles(particles, tmp_path / "particles.parquet")
     arguments = "particles.parquet", "suzaku", "suzaku", "--restart", "200"

@@ -152,6 +152,7 @@ def test_a_physics_model_begun_anew_each_step_steers_as_one_that_goes_on(suzaku)
     assert reached == pytest.approx(whole.states[0, 0, -1], rel=1e-12)
 
 
+@pytest.mark.long
 def test_a_predictor_with_a_memory_steps_by_itself(sailed):
     class Own(Nomoto):
         begun = 0

@@ -109,6 +109,7 @@ def test_validate_shows_them(folder):
     assert errors[0] < 0.02 < errors[1]
 
 
+@pytest.mark.long
 def test_leave_out_predicts_them(folder):
     command = ("leave-out", "-p", "suzaku", "-t", "log", "--ar", "0.1", "--targets", "N_r", "--starts", "1", "-q")
     document = run(*command, "--manoeuvres", "--json", cwd=folder).json()

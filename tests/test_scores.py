@@ -149,6 +149,7 @@ def test_a_state_that_does_not_vary(arguments, eastward):
     assert "fix: " in ended.err
 
 
+@pytest.mark.long
 def test_what_is_not_divided_by_the_spread_works_all_the_same(eastward):
     line = ("fit", "--trials", "log", "--objective", "standardised", "--channels", "u,v,r", "--initial", "estimated")
     fitted = run(*line, *ONE_TARGET, "--method", "least-squares", "--no-report", "--json", cwd=eastward)

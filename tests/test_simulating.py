@@ -178,6 +178,7 @@ def test_orders_beside_trials_and_revolutions_astern_without_a_stop_are_refused(
         mmgtune.simulate("esso_osaka", [TURN], SimulateOptions(stop=True))
 
 
+@pytest.mark.long
 def test_a_stop_in_words(tmp_path):
     ended = typed("simulate", "-p", "esso_osaka", "--stop", "--out", tmp_path / "run")
     assert ended.code == 0

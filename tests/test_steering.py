@@ -118,6 +118,7 @@ def with_memory(profile):
     return replace(with_effects(profile, values, "a test"), actuators={"n": Actuator(-2.0, 2.0, 0.01)})
 
 
+@pytest.mark.daily("compiled")
 @pytest.mark.parametrize("backend", ["compiled", "numpy"])
 @pytest.mark.parametrize("kind", ["gear", "at once", pytest.param("memory", marks=pytest.mark.long), "astern"])
 def test_lanes_are_those_stepped_with_their_helmsmen(kvlcc2, esso_osaka, kind, backend):

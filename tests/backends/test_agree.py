@@ -43,6 +43,7 @@ def test_ahead_and_astern_agree(esso_osaka, integrator):
     assert np.max(np.abs(compiled - reference) / (1.0 + np.abs(reference))) < 1e-9
 
 
+@pytest.mark.daily("integrator1")
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("euler", 3)])
 def test_900_steps_to_1e_9(any_model, integrator):
     """As many steps of the method whichever it is: stages and substeps count."""

@@ -58,6 +58,7 @@ def agree(model, cases, integrator=RK4, theta=None, initial=None):
     return found
 
 
+@pytest.mark.long
 def test_every_profile_moves_as_on_numpy(ship):
     integrator = Integrator("rk4", 2)  # euler is that of the tests below
     name = f"{ship.parts[-1].kind}.{ship.parts[-1].params._fields[0]}"
@@ -88,6 +89,7 @@ def of_many_lengths(model, rng):
     )
 
 
+@pytest.mark.daily("integrator0")
 @pytest.mark.parametrize("integrator", [EULER, Integrator("rk4", 2)])
 def test_gaps_and_cases_of_different_length(suzaku, integrator):
     rng = np.random.default_rng(1)
@@ -129,6 +131,7 @@ def test_a_diverging_lane_is_a_status_and_leaves_the_others_alone(suzaku):
     assert result.cost[0, 1] == np.inf
 
 
+@pytest.mark.long
 def test_settings_of_jax_stay_as_they_were(suzaku):
     with jax.enable_x64(False):
         get_backend("jax").run(suzaku, suzaku.matrix(), turn(suzaku, 20.0, 20.0))
@@ -346,6 +349,7 @@ def test_a_clock_at_a_sample_has_the_mean_of_two_slopes(suzaku):
     assert np.allclose(jax.jit(jax.jacfwd(J))(np.array(0.0)), expected, rtol=1e-6, atol=1e-8)
 
 
+@pytest.mark.long
 def test_something_learnt_may_stand_beside_the_rates(suzaku):
     """``by`` takes the place of the rates: here those of the model, and a constant acceleration of 0.01 m/s^2."""
     cases = turn(suzaku, 0.0, 20.0)

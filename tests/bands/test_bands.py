@@ -52,6 +52,7 @@ def test_infinite_particles_lie_beyond_all_others():
     assert quantiles(np.full(3, np.inf), (0.6,))[0] == np.inf
 
 
+@pytest.mark.daily("[19]", "[5]", "[2]")
 @pytest.mark.parametrize("n", [2, 5, 19, 100])
 def test_a_band_holds_what_it_says_with_few_particles_too(n):
     """A further draw from the same distribution lies in the band as often as the band says, whatever the number."""

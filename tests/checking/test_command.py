@@ -195,6 +195,7 @@ def test_limits_need_no_baseline(folder):
     assert "above the profile's limit of 1" in ended.out
 
 
+@pytest.mark.long
 def test_sensitivity(ready):
     shown = check(ready, "--sensitivity", "0.02")
     assert shown.code == 0, shown.err

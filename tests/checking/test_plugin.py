@@ -55,6 +55,7 @@ def test_a_regression_fails_with_its_cause_and_no_traceback(project):
     assert "pytest_plugin.py" not in ended.stdout
 
 
+@pytest.mark.long
 def test_a_trial_that_is_gone_fails(project):
     next((project / "trials").glob("zigzag_20*")).unlink()
     ended = pytest_in(project, "--mmgtune", "check.toml")
@@ -62,6 +63,7 @@ def test_a_trial_that_is_gone_fails(project):
     assert "the baseline has it, the trials do not" in ended.stdout
 
 
+@pytest.mark.daily("not valid TOML", "no [[check", "is missing")
 @pytest.mark.parametrize(
     ("content", "said"),
     [

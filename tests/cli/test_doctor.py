@@ -29,6 +29,7 @@ def test_what_is_wrong_is_said_with_the_fix(tmp_path):
     assert "fix: " in ended.out
 
 
+@pytest.mark.long
 def test_a_back_end_that_fails(tmp_path):
     (tmp_path / "sitecustomize.py").write_text(
         "import mmgtune.backends.compiled as c\n"
@@ -42,6 +43,7 @@ def test_a_back_end_that_fails(tmp_path):
     assert "--backend numpy" in ended.out
 
 
+@pytest.mark.long
 def test_no_folder_for_kernels_is_told(tmp_path):
     (tmp_path / "file").write_text("", encoding="utf-8")
     ended = run("doctor", cwd=tmp_path, env={"MMGTUNE_CACHE": str(tmp_path / "file")})

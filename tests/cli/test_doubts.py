@@ -86,6 +86,7 @@ def test_validate_on_trials(folder):
     assert other["doubts"] == []
 
 
+@pytest.mark.long
 def test_validate_on_voyages(folder):
     ended = run("validate", "ship.toml", "suzaku", "voyage.parquet", "--quiet", "--out", "on", cwd=folder)
     assert said(ended) == 1
@@ -96,6 +97,7 @@ def test_validate_on_voyages(folder):
         assert "such a ship was never seen" in text
 
 
+@pytest.mark.long
 def test_compare_and_simulate(folder):
     ended = run("profile", "compare", "suzaku", "ship.toml", "--out", "compared", cwd=folder)
     assert said(ended) == 1

@@ -15,6 +15,7 @@ from tests.command import run
 COMPILED = ("simulate", "--trials", "suzaku", "--no-report", "--out", "out")
 
 
+@pytest.mark.daily("DISABLE_JIT")
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -31,6 +32,7 @@ def test_settings_that_numba_cannot_work_with(name, value, tmp_path):
     assert run(*COMPILED, "--backend", "numpy", "--force", cwd=tmp_path, env={name: value}, fresh=True).code == 0
 
 
+@pytest.mark.daily("abc", "[0]")
 @pytest.mark.parametrize("value", ["abc", "0", "-1", "1.5", "²", "9" * 30])
 def test_cores_that_are_no_number(value, tmp_path, monkeypatch):
     few = ("--method", "least-squares", "--starts", "1", "--targets", "hull.R_0", "--no-report", "--quiet")
@@ -44,10 +46,12 @@ def test_cores_that_are_no_number(value, tmp_path, monkeypatch):
     assert "MMGTUNE_THREADS is" in doctor._cores().value
 
 
+@pytest.mark.long
 def test_the_doctor_says_so_too(tmp_path):
     assert "MMGTUNE_THREADS is" in run("doctor", cwd=tmp_path, env={"MMGTUNE_THREADS": "abc"}).out
 
 
+@pytest.mark.daily("abc", "[0]")
 @pytest.mark.parametrize("value", ["99999999", "9" * 30, "1", "0", "-5", "abc"])
 def test_the_help_whatever_the_width(value, tmp_path):
     ended = run("--help", cwd=tmp_path, env={"COLUMNS": value}, fresh=True)
@@ -55,6 +59,7 @@ def test_the_help_whatever_the_width(value, tmp_path):
     assert max(map(len, ended.out.splitlines())) <= 1000
 
 
+@pytest.mark.daily("nowhere", "version")
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 @pytest.mark.parametrize("line", ["--version", "validate suzaku suzaku --json", "fit -t nowhere"])
 def test_no_room_for_what_went_wrong_either(line, tmp_path):

@@ -65,6 +65,7 @@ def test_tuned_profile_keeps_comments_and_gives_the_same_cost(finished):
     assert pytest.approx(ended.json()["J_tune"], rel=1e-12) == J
 
 
+@pytest.mark.long
 def test_a_tuned_profile_can_be_tuned_again(finished):
     folder, ended = finished
     again = run("fit", *QUICK, "--ar", "0.1", "--json", "-p", "run/profile.toml", "--out", "again", cwd=folder)
@@ -110,6 +111,7 @@ def test_dry_run_writes_nothing(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.daily("[fit]")
 @pytest.mark.parametrize("command", ["fit", "diagnose"])
 def test_dry_run_compiles_nothing(command, tmp_path):
     ended = run(command, "--dry-run", cwd=tmp_path, env={"MMGTUNE_CACHE": str(tmp_path / "cache")}, fresh=True)
@@ -118,6 +120,7 @@ def test_dry_run_compiles_nothing(command, tmp_path):
     assert list(tmp_path.rglob("*.nbc")) == []
 
 
+@pytest.mark.long
 def test_kill_9_and_resume_gives_the_same_result(tmp_path):
     search = ("fit", *FEW, "--no-report", "--quiet", "--starts", "2", "--seed", "5")
     whole = run(*search, "--json", "--out", "whole", cwd=tmp_path)

@@ -36,6 +36,7 @@ def ended(folder, *arguments, number=signal.SIGINT, name="", when="sent()", befo
     return subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, timeout=120)
 
 
+@pytest.mark.daily("pyarrow", "cli")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("name", ["mmgtune.cli", "typer", "mmgtune.trial", "pyarrow"])
 def test_at_start(tmp_path, name, number):
@@ -64,6 +65,7 @@ def test_at_exit(tmp_path):
 FEW = ("--targets", "R_0,w_P0", "--method", "least-squares", "--starts", "1", "--no-report", "--quiet", "--out", "run")
 
 
+@pytest.mark.daily("[2]")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_when_the_result_is_written(tmp_path, number):
     """What is said then names the folder with the results."""
@@ -74,6 +76,7 @@ def test_when_the_result_is_written(tmp_path, number):
     assert (tmp_path / "run" / "sweep.json").exists()
 
 
+@pytest.mark.long
 def test_twice_while_it_works(tmp_path):
     """The second ends it at once; halves of files do not stay."""
     before = """

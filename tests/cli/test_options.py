@@ -192,6 +192,7 @@ def test_orders_in_degrees_are_refused():
     assert mmgtune.TurningOrder(-1.2).angle == -1.2
 
 
+@pytest.mark.long
 def test_a_pipe_that_closes_early_is_no_failure(tmp_path):
     code = "import sys; from mmgtune.__main__ import main; sys.argv = ['mmgtune', 'fit', '--dry-run']; main()"
     command = [sys.executable, "-c", code]

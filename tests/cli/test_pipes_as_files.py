@@ -26,6 +26,7 @@ def refused(line: tuple[str, ...], folder: Path) -> str:
     return said
 
 
+@pytest.mark.daily("line0", "line5")
 @pytest.mark.parametrize(
     "line",
     [

@@ -47,6 +47,7 @@ def test_validate_and_simulate_say_it_once(folder):
     assert "note:" not in quiet.err
 
 
+@pytest.mark.long
 def test_json_has_it_as_a_field(folder):
     validated = run("validate", "ship.toml", "trials", "--backend", "numpy", "--json", cwd=folder)
     (row,) = validated.json()["profiles"]

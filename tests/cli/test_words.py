@@ -27,6 +27,7 @@ def completed(typed, cwd):
     return done.stdout.split()
 
 
+@pytest.mark.long
 def test_the_shell_completes_words_names_and_files(tmp_path):
     (tmp_path / "my_ship.toml").write_text("")
     (tmp_path / "my_notes.txt").write_text("")
@@ -99,6 +100,7 @@ def test_what_is_no_profile_lists_trained_models_too(tmp_path):
     assert "esso_osaka_3m_hybrid" in run("validate", "nope", "suzaku", cwd=tmp_path).err
 
 
+@pytest.mark.long
 def test_a_dry_run_that_nobody_reads_is_no_failure(tmp_path):
     line = f"{sys.executable} -m mmgtune fit --method least-squares --dry-run"
     done = subprocess.run(

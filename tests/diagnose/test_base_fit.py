@@ -38,6 +38,7 @@ def runs(profile, seed, turn, weave):
     return found
 
 
+@pytest.mark.daily("damped")
 @pytest.mark.parametrize(
     ("seed", "turn", "weave", "most"),
     [(3, 35.0, 20.0, 1.0), (2, -35.0, -10.0, 20.0)],

@@ -87,6 +87,7 @@ def test_no_leeway_is_nothing_beside_the_targets(suzaku):
     assert bench.beliefs(bench.targets, {}) is None
 
 
+@pytest.mark.long
 def test_limits_of_detection_are_those_of_a_hull_that_follows(sailed):
     """Shallow water changes coefficients that have leeway: it shows only where they would have to go far."""
     profile, trials = sailed

@@ -95,6 +95,7 @@ def test_the_profile_keeps_nothing_of_a_run_and_the_record_all(currents, tmp_pat
     assert [line.split()[0] for line in told.splitlines() if " m/s   " in line] == sorted(TUNING)
 
 
+@pytest.mark.long
 def test_a_current_that_hardly_differs_is_one_for_all(tmp_path):
     """A hundredth of it from run to run shows, and kept the whole current out of the profile."""
     strengths = dict(zip(NAMES, 0.45 + 0.006 * np.array([1, 1, -1, 1, 1, -1, -1, 1, -1, 1]), strict=True))

@@ -423,6 +423,7 @@ def test_the_bundled_trials_visit_what_every_effect_is_about():
             assert effect.unvisited(found, seen) == "", effect.tag
 
 
+@pytest.mark.long
 def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     """Hidden is a force that grows no more beyond 6 deg: a stall fits that perfectly, and no rudder stalls there."""
     monkeypatch.setattr(plant, "TRIALS", tuple((f"zigzag_{k}", 10.0, 500.0) for k in range(3)))

@@ -221,6 +221,7 @@ def drifted(tmp_path_factory):
     return case, folder, said_of(case, folder, effects=LIKE_IT)
 
 
+@pytest.mark.long
 def test_the_extended_profile_is_a_profile_like_any_other(drifted):
     case, folder, result = drifted
     assert outcome(case.effects, result.to_dict()) == "right"

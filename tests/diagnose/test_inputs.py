@@ -31,6 +31,7 @@ class Backend:
         return replace(result, residuals=residuals, diverged=result.diverged | lanes.reshape(-1, 1))
 
 
+@pytest.mark.daily("lost1")
 @pytest.mark.parametrize("lost", [[(1, 3)], [(1, 0)]])
 def test_a_run_that_diverges_under_other_inputs_changes_nothing(lost):
     """Trials of one ship with the profile of another: half a diagnosis later eigenvalues did not converge."""

@@ -53,7 +53,8 @@ def test_neither_of_the_ship_of_the_profile_nor_of_one_unlike_her_in_many_ways(t
         assert instead_of_tuning(bench, base_fit(bench), known) is None
 
 
-@pytest.mark.parametrize(("rate", "left"), [pytest.param(0.0, ("north", "east"), marks=pytest.mark.long), (3e-4, None)])
+@pytest.mark.long
+@pytest.mark.parametrize(("rate", "left"), [(0.0, ("north", "east")), (3e-4, None)])
 def test_a_current_keeps_its_rates_where_it_changes(tmp_path, rate, left):
     water = {"current": {"north": 0.2, "east": -0.1, "north_rate": rate, "east_rate": 0.0}}
     bench, known = bench_of(tmp_path, {}, water)

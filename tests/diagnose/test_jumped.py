@@ -57,6 +57,7 @@ def test_a_receiver_that_jumps_all_the_time_is_left(sailed):
     assert in_parts(shaken) == (shaken, {})
 
 
+@pytest.mark.long
 def test_nothing_else_is_blamed_for_it(sailed, tmp_path):
     id = sailed.tune[-1]
     result = diagnose(load_profile("suzaku"), with_jump(sailed, id, (sailed.trials[id].n_samples // 2, 16.0)), OPTIONS)

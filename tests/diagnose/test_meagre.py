@@ -65,6 +65,7 @@ def test_fewer_samples_than_coefficients():
     json.dumps(result.to_dict(), allow_nan=False)
 
 
+@pytest.mark.long
 def test_a_channel_of_numbers_whose_squares_are_none():
     """A warning of NumPy, and a J that was no number."""
     trial = load_trials("suzaku").trials["turn_p35"]
@@ -99,6 +100,7 @@ def test_a_run_astern_that_the_model_does_not_have_is_told_first():
     assert "Leave that out" not in diagnose("suzaku", [crash], asked).sentence()  # there is nothing else
 
 
+@pytest.mark.daily("0.04")
 @pytest.mark.parametrize(("off", "verdict"), [(0.0, "none"), (0.04, "unexplained")])
 def test_a_ship_that_swings_in_waves_is_told_first(off, verdict):
     """Nothing that is known explains it, and nothing has to, where nothing else is left; off: a slow error [m/s]."""

@@ -17,6 +17,7 @@ from mmgtune.trial import load_trials
 from tests.diagnose.sensors import logged
 
 
+@pytest.mark.daily("inside")
 @pytest.mark.parametrize(("times", "said"), [(1.8, True), (1.3, False)], ids=["beyond the box", "inside"])
 def test_a_resistance_beyond_the_box_is_said(suzaku, monkeypatch, times, said):
     profile = suzaku.profile

@@ -34,7 +34,7 @@ OFF = {
 def diagnosed(folder, hidden, **ship):
     profile = load_profile("suzaku")
     write(simulate({name: factor * profile.value(name) for name, factor in ship.items()}, hidden, seed=5), folder)
-    return diagnose(profile, load_trials(folder), DiagnoseOptions(effects=("loading", "shallow-water", "gyro-bias")))
+    return diagnose(profile, load_trials(folder), DiagnoseOptions(effects=("loading", "gyro-bias")))
 
 
 def test_a_hull_far_off_is_no_loading(tmp_path):
@@ -48,6 +48,7 @@ def test_a_hull_far_off_is_no_loading(tmp_path):
     assert any("leeway=0.1" in note for note in result.warnings)
 
 
+@pytest.mark.long
 def test_a_loading_is_no_hull(tmp_path):
     result = diagnosed(tmp_path, {"loading": {"draught": 0.9}})
     assert [cause.tag for cause in result.causes] == ["loading"]

@@ -91,6 +91,7 @@ def test_a_step_that_is_tried_leads_where_it_says_and_nowhere_worse(look):
     assert (again <= left).all()
 
 
+@pytest.mark.long
 def test_beside_one_that_leaves_noise_others_are_given_up(look):
     refitter, by_names = look
     known, n = refitter.known, refitter.bench.problem.n_residuals
@@ -154,6 +155,7 @@ def test_where_little_is_left_what_does_not_earn_its_price_is_not_refitted():
     assert not fitted & (set(ALIKE) - best - earns)
 
 
+@pytest.mark.daily("nan")
 @pytest.mark.parametrize("chi2", [np.inf, np.nan])
 def test_nothing_is_looked_for_where_what_has_no_leeway_runs_away(monkeypatch, chi2):
     refitter, _ = first_look({}, ("current",))

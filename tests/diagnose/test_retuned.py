@@ -141,6 +141,7 @@ def test_inertia_that_is_not_the_profile_s_is_told_though_it_is_no_target(after,
     assert far_off([inertia]) == besides([inertia]) == in_words([inertia]) == ""
 
 
+@pytest.mark.long
 def test_the_inertia_of_another_loading_is_told(tmp_path):
     ship = load_profile("suzaku")
     write(simulate({"particulars.k_zz_": 1.25 * ship.value("particulars.k_zz_")}, {}, seed=3), tmp_path)
@@ -157,6 +158,7 @@ def test_the_inertia_of_another_loading_is_told(tmp_path):
     assert not inertia.to_dict()["target"]
 
 
+@pytest.mark.long
 def test_a_hull_as_the_profile_has_it_is_not(tmp_path):
     write(simulate({}, {}, seed=3), tmp_path)
     options = DiagnoseOptions(effects=("rudder-offset", "gyro-bias"), targets=TARGETS)

@@ -19,6 +19,7 @@ FEW = ("hull.R_0", "wake.w_P0", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_R
 TUNE, TEST = ("turn_p20", "turn_m20"), ("turn_m10", "turn_p10", "zigzag_20")
 
 
+@pytest.mark.daily("True-unexplained")
 @pytest.mark.parametrize(("keep", "verdict"), [(True, "unexplained"), (False, "found")])
 def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, verdict, tmp_path):
     case = of_runs("current", 3, seed=1)

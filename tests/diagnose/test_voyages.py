@@ -64,6 +64,7 @@ def test_a_current_of_each_voyage_is_found(tmp_path):
     assert result.verdict == "found"
 
 
+@pytest.mark.long
 def test_as_a_user_runs_it(tmp_path):
     serve(tmp_path / "logs", [{"current": {"north": 0.2 * k, "east": 0.0}} for k in range(3)], seed=2, courses=4)
     told = ("diagnose", "-p", "suzaku", "-t", str(tmp_path / "logs"), "--windows", "9", "--effects", "current")

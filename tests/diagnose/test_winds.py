@@ -53,6 +53,7 @@ def wind_on(profile, trials, **options):
     return bench, point, bench.values(point)
 
 
+@pytest.mark.long
 def test_the_wind_is_found_though_its_force_is_off_the_formulas(sailed):
     bench, point, found = wind_on(*sailed)
     assert point.names[:4] == tuple(f"effects.wind.{name}" for name in OFF)
@@ -135,6 +136,7 @@ def test_gusts_are_no_unknown_cause(sailed):
     assert leftover(bench, base_fit(bench)).excess > 5.0
 
 
+@pytest.mark.long
 def test_gusts_are_no_larger_than_is_seen(sailed):
     bench, point, _ = wind_on(*sailed)
     linear, n = linearise(bench, point), bench.problem.n_residuals
@@ -154,6 +156,7 @@ def test_gusts_are_no_larger_than_is_seen(sailed):
     assert linear.with_inputs_seen(point.chi2, linear.wander) is linear
 
 
+@pytest.mark.daily("0.12-0.0")
 @pytest.mark.parametrize(("gusts", "time_constant"), [(0.0, 4.0), (0.12, 0.0)])
 def test_a_cause_beside_a_wind_is_told(gusts, time_constant):
     """A lag of the rudder is believed beside a steady wind, and nothing is that gusts left."""

@@ -39,6 +39,7 @@ def test_the_example_of_the_readme_runs(capsys):
     assert "4 of 4 of these trials improve" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_the_examples_of_the_library_page_run(capsys):
     for example in code(ROOT / "docs" / "reference" / "api" / "index.md", "python"):
         exec(compile(example, "index.md", "exec"), {})
@@ -133,6 +134,7 @@ def test_numbers_of_the_readme_are_those_of_the_program():
     assert f"{estimated.J_of('test', 'after'):.2f} instead of {result.J_of('test', 'after'):.1f}" in guide
 
 
+@pytest.mark.long
 def test_the_sweep_table_is_current():
     table = (ROOT / "docs" / "guides" / "calibrate.md").read_text(encoding="utf-8")
     for a_r in (0.2, 0.6):

@@ -197,6 +197,7 @@ def test_equations_are_shown(visit):
     assert over["y"] + over["height"] <= under["y"] + 1.0  # one above the other: rendered, not spelt out
 
 
+@pytest.mark.daily("tutorial/index.html")
 @pytest.mark.browser
 @pytest.mark.parametrize(
     "name",

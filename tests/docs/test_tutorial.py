@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from tools import generate_tutorial_logs
 
@@ -57,6 +58,7 @@ def not_said(shown: str, said: list[str]) -> list[str]:
     return missing
 
 
+@pytest.mark.long
 def test_the_tutorial_does_what_it_shows(tmp_path):
     assert follow(tmp_path) == []
 

@@ -383,6 +383,7 @@ def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship, tags):
     assert found.diverged.mean() < 0.2
 
 
+@pytest.mark.long
 def test_a_current_is_fitted_like_any_coefficient(ship, tmp_path):
     """`fit` and `sweep` take parameters of effects as targets."""
     from mmgtune.fitting import FitOptions, fit

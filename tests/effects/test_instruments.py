@@ -198,6 +198,7 @@ def test_a_rudder_moved_by_hand_between_samples_is_no_noise_without_end():
     assert find_effect("backlash").read_off["noise"](seen) == pytest.approx(0.5 * DEG)
 
 
+@pytest.mark.long
 def test_play_is_found_as_it_is_though_the_log_of_the_rudder_is_noisy():
     """Without ``noise`` it would be found 0.6 deg too large."""
     rng = np.random.default_rng(1)

@@ -108,6 +108,7 @@ def test_lags_may_remember_any_force_in_any_number_of_states(environment):
     assert python(environment, "-c", LAGGING).strip() == "lags"
 
 
+@pytest.mark.long
 def test_diagnose_names_it_and_writes_it(environment, tmp_path):
     import json
 

@@ -39,6 +39,7 @@ def test_samples_far_apart_count_alone(suzaku, clean):
     assert thin.n_residuals < dense.n_residuals / 4.5
 
 
+@pytest.mark.long
 def test_huber_shrugs_off_spikes(suzaku, clean):
     rng = np.random.default_rng(4)
 
@@ -152,6 +153,7 @@ def test_effects_that_cannot_be_put_in(arguments, said, tmp_path):
     assert said in ended.err
 
 
+@pytest.mark.long
 def test_the_leave_out_command(tmp_path, clean):
     (tmp_path / "log").mkdir()
     for name in clean.tune:

@@ -114,6 +114,7 @@ def test_what_trials_do_not_know_stays_and_what_they_know_follows(suzaku):
     assert "the prior decides the rest" in result.identifiability.sentences[0]
 
 
+@pytest.mark.long
 def test_twice_the_data_half_the_pull(suzaku):
     names = ("hull.R_0", "wake.w_P0", "rudder.kappa")
     profile = scattered(suzaku.profile, 0.05, names)
@@ -200,6 +201,7 @@ def test_a_solve_is_told_from_another_by_its_prior(formulas, noisy):
     assert len(set(asked)) == 4
 
 
+@pytest.mark.long
 def test_sweeps_and_leaving_out_follow(formulas, noisy):
     few = ("hull.R_0", "wake.w_P0")
     swept = sweep(

@@ -48,6 +48,7 @@ def test_with_eps_held_at_the_truth_every_coefficient_is_recovered(suzaku, clean
         assert value == pytest.approx(TRUTH[name], rel=2e-3), name
 
 
+@pytest.mark.long
 def test_cma_es_alone_reaches_the_cost_too(suzaku, clean):
     from mmgtune.fitting.cmaes import search
 

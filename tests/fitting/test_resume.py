@@ -53,6 +53,7 @@ def lines(folder):
     return (folder / NAME).read_text().splitlines()
 
 
+@pytest.mark.long
 def test_a_stopped_leave_out_tells_what_it_has_and_goes_on(tmp_path):
     options = LeaveOutOptions(targets=FEW, starts=1)
     whole = leave_out("suzaku", "suzaku", options)
@@ -178,6 +179,7 @@ def few_trials(folder):
     return folder
 
 
+@pytest.mark.long
 def test_kill_9_of_a_diagnosis_and_resume(tmp_path):
     trials = str(few_trials(tmp_path / "trials"))
     wanted = ("--effects", "speed-scale,current", "--targets", "R_0,w_P0")
@@ -216,6 +218,7 @@ def test_ctrl_c_of_a_diagnosis_concludes_nothing(tmp_path):
     assert "--resume --out run continues" in ended.err
 
 
+@pytest.mark.long
 def test_ctrl_c_of_leave_out(tmp_path):
     asked = ("leave-out", "--targets", "R_0,w_P0,kappa", "--starts", "1", "--quiet", "--out", "run")
     journal = tmp_path / "run" / NAME

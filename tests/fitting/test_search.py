@@ -99,6 +99,7 @@ def test_no_files_are_left_behind(problem, tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["cma_signals.in"]
 
 
+@pytest.mark.long
 def test_least_squares_and_cma_es_agree_with_active_bounds(problem, searched):
     start = problem.box.to_unit(problem.box.pre)
     by_squares, by_cma = solve(problem, start[:, None])[0], searched
@@ -246,6 +247,7 @@ def swept():
     return sweep("suzaku", "suzaku", SweepOptions(widths=(0.6, 0.2, 0.4), method="least-squares", starts=4))
 
 
+@pytest.mark.long
 def test_j_never_rises_with_a_r(swept):
     assert swept.widths == [0.2, 0.4, 0.6]
     J = [run.J for run in swept.runs]
@@ -290,6 +292,7 @@ def test_without_test_trials_one_trial_is_left_out_at_a_time(suzaku):
     assert off["left-out"]["track_m"]["after"] < off["left-out"]["track_m"]["before"]
 
 
+@pytest.mark.daily("choice0")
 @pytest.mark.parametrize("choice", [{"regularise": 0.5}, {"loss": "huber"}])
 def test_trials_left_out_by_a_sweep_and_by_leave_out_are_judged_alike(choice):
     """A sweep left out trials without the regularisation and the loss it fitted with."""

@@ -90,6 +90,7 @@ def test_a_rate_limit_is_found_from_its_null_at_infinity(ship, ordered, options)
     assert again.coefficient(RATE_LIMIT).pre_determined == np.inf
 
 
+@pytest.mark.long
 def test_a_lag_that_is_not_there_stays_at_its_null(tmp_path):
     """The bundled trials log the blade itself, behind its gear."""
     options = ("--method", "least-squares", "--starts", "2", "--out", "run", "--quiet", "--json")

@@ -88,6 +88,7 @@ def test_tls_is_passed_through(tmp_path: Path) -> None:
             assert client.submit(sum, [1, 2]).result() == 3
 
 
+@pytest.mark.long
 def test_a_scheduler_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("mmgtune.fleet.cluster.PATIENCE", "1s")

@@ -103,6 +103,7 @@ def test_the_command_says_jobs_and_time_and_writes_nothing(tmp_path: Path) -> No
     assert (wrong.code, "--tls-ca" in wrong.err) == (2, True)
 
 
+@pytest.mark.long
 def test_reports_of_jobs_can_be_left_out_and_made_later(tmp_path: Path) -> None:
     make_logs(tmp_path, ("a1",), ("2025-01",))
     (tmp_path / "fleet.toml").write_text(QUICK, encoding="utf-8")
@@ -121,6 +122,7 @@ def test_reports_of_jobs_can_be_left_out_and_made_later(tmp_path: Path) -> None:
     assert f'{folder.relative_to(tmp_path / "out")}/report.html"' in page
 
 
+@pytest.mark.long
 def test_two_fleets_do_not_mix_in_one_folder(tmp_path: Path) -> None:
     for of in "ab":
         make_logs(tmp_path / of, (f"{of}1",), ("2025-01",))

@@ -30,6 +30,7 @@ def test_what_once_failed(case: Path, tmp_path: Path) -> None:
     assert not outcome.failed, outcome.said
 
 
+@pytest.mark.long
 def test_cases_can_be_made_again() -> None:
     for kind in KINDS.values():
         assert dict(files_of(kind, 1, 7)) == dict(files_of(kind, 1, 7)), kind.name

@@ -53,6 +53,7 @@ def test_sets_are_those_of_the_paper():
     assert {*AS_PUBLISHED["train-b"].ids}.isdisjoint(AS_PUBLISHED["test-b"].ids)
 
 
+@pytest.mark.daily("test-b")
 @pytest.mark.parametrize("name", sets.PLANS)
 def test_every_set_can_be_read_and_says_what_it_is(folder, name):
     shown, true = load_trials(folder / name), load_trials(folder / name / "truth")
@@ -80,6 +81,7 @@ def test_noise_is_as_large_as_it_says_and_nothing_else_differs(folder):
         assert all(np.array_equal(shown.trials[id].extra[key], one.extra[key]) for key in one.extra)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", sets.PLANS)
 def test_the_truth_is_the_profile(folder, name):
     """Simulated with the logged inputs and the logged wind, trials come out as they are."""
@@ -150,6 +152,7 @@ def test_the_same_seed_makes_the_same_whatever_else_is_made(folder, tmp_path):
     assert np.abs(first - other).max() > 0.1
 
 
+@pytest.mark.long
 def test_samples_of_a_second_are_those_of_every_step(folder, tmp_path):
     make_trials("vectwin", tmp_path, MakeOptions(sets=("test-r",)))
     fine, coarse = load_trials(folder / "test-r" / "truth"), load_trials(tmp_path / "test-r" / "truth")
@@ -172,6 +175,7 @@ def test_the_ship_at_full_scale_is_her_own_profile(tmp_path):
     assert max(one.u[0] for one in trials) <= 0.3 * 50.0**0.5
 
 
+@pytest.mark.long
 def test_wind_where_it_is_asked_for(tmp_path):
     make_trials("vectwin", tmp_path / "all", MakeOptions(sets=("test-zt",), wind="all"))
     make_trials("vectwin", tmp_path / "none", MakeOptions(sets=("test-r",), wind="none"))

@@ -287,6 +287,7 @@ def test_cases_are_drawn_again_the_same():
         assert abs(value / PROFILE[name] - 1.0) <= cases.SPREAD
 
 
+@pytest.mark.long
 def test_cases_measured_otherwise_vary_in_programme_sampling_and_noise(tmp_path):
     drawn = [
         cases.otherwise(tag, seed) for tag in ("current", "flap", "antenna", "memory", "wind") for seed in (1, 2, 3)

@@ -27,6 +27,7 @@ def needs(folder):
     )
 
 
+@pytest.mark.long
 @needs(DATA)
 def test_all_records_of_the_esso_osaka(tmp_path):
     logs = sorted(DATA.glob("*/*.csv"))

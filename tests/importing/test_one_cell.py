@@ -35,6 +35,7 @@ def angle(degrees, sides, form):
     return f"{whole} {minutes:.7f} {side}"
 
 
+@pytest.mark.daily("origin0")
 @pytest.mark.parametrize("origin", [(35.0, 139.0), (-33.5, -170.0001), (35.0, -0.0001)])
 @pytest.mark.parametrize("letters", [True, False])
 def test_degrees_and_minutes_in_one_number(tmp_path, origin, letters):
@@ -74,6 +75,7 @@ def test_numbers_that_are_no_degrees_and_minutes(tmp_path):
         assert "unit of 'x' is 'ddmm'" in ended.err, name
 
 
+@pytest.mark.daily("origin1")
 @pytest.mark.parametrize("origin", ORIGINS)
 @pytest.mark.parametrize("form", ["side", "before", "seconds", "plain", "commas", "point"])
 def test_latitude_and_longitude_in_one_column(tmp_path, origin, form):

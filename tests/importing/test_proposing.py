@@ -35,6 +35,7 @@ def needs(name):
 # disguises
 
 
+@pytest.mark.long
 def test_disguises_of_bundled_trials(tmp_path):
     logs = bundled_logs()
     right = total = 0
@@ -51,6 +52,7 @@ def test_disguises_of_bundled_trials(tmp_path):
     assert right > 0.97 * total
 
 
+@pytest.mark.daily("kvlcc2-hsva")
 @pytest.mark.parametrize("name", [pytest.param(name, marks=needs(name)) for name in SETS])
 def test_disguises_of_measured_trials(tmp_path, name):
     preset, pattern, _ = SETS[name]
@@ -136,6 +138,7 @@ def test_a_wrong_map_makes_other_trials(tmp_path):
 # measured sets as they are
 
 
+@pytest.mark.daily("kvlcc2")
 @pytest.mark.parametrize("name", [pytest.param(name, marks=needs(name)) for name in ("esso-osaka-frt", "kvlcc2-hsva")])
 def test_the_map_of_a_measured_set_is_the_preset(name):
     preset, pattern, _ = SETS[name]

@@ -188,6 +188,7 @@ ORIGINS = [(35.0, 139.0), (-33.5, -70.0001), (0.0001, -0.0001), (-0.5, 0.9999), 
 """With minutes that begin anew, degrees that are -0, and a change of hemisphere."""
 
 
+@pytest.mark.daily("origin1", "origin3")
 @pytest.mark.parametrize("origin", ORIGINS)
 @pytest.mark.parametrize("signed", ["letters", "degrees", "minutes", "both"])
 def test_degrees_and_minutes_of_all_quarters(tmp_path, origin, signed):

@@ -94,6 +94,7 @@ def test_more_members_know_better_what_they_do_not_know(trained):
         assert all_.L_Eucl == pytest.approx(few.L_Eucl, rel=0.5)
 
 
+@pytest.mark.long
 def test_one_member_for_a_whole_path_spreads_wider_than_another_each_step(trained):
     trials = sailed(4, 35.0, seed=35, name="test")
     keeping, changing = (spread_of(trained.ensemble, trials, sampling) for sampling in ("TS-infinity", "TS1"))
@@ -154,6 +155,7 @@ def test_the_predictor_is_the_roll_out_that_was_trained(data, trained):
     np.testing.assert_allclose(np.asarray(on_jax)[:, 0, :3], found.states[0, 3, :, :3], atol=5e-3)
 
 
+@pytest.mark.long
 def test_gradients_are_those_of_finite_differences(task):
     import jax
 
@@ -228,6 +230,7 @@ def test_the_same_seed_gives_the_same_weights_and_another_others(data, small, mo
     assert np.abs(weights(small) - weights(other)).max() > 0.01
 
 
+@pytest.mark.daily("4")
 @pytest.mark.parametrize("after", [1, 4])
 def test_resumed_equals_not_interrupted(data, small, tmp_path, after):
     """Stopped in the first member or in the second, and gone on: the same bits."""
@@ -298,6 +301,7 @@ def test_divergence_goes_back_in_its_member_alone(data, monkeypatch, one_step):
     assert np.isfinite(weights(result)).all()
 
 
+@pytest.mark.long
 def test_runs_kept_back_watch_and_held_out_ones_are_scored(data, tmp_path):
     ids = data.tune
     split = replace(data, tune=ids[:8], test=ids[8:])

@@ -93,6 +93,7 @@ def test_its_page_begins_with_metres_and_degrees(trained, tmp_path):
         assert built.verdict.startswith(said)
 
 
+@pytest.mark.long
 def test_training_on_jax_and_the_predictor_are_one_model(trained):
     """The roll-out that is trained against, and what users get: the same states but for single precision."""
     import jax.numpy as jnp
@@ -166,6 +167,7 @@ def test_resumed_equals_not_interrupted(tmp_path, trained):
     assert second.gains == trained.gains
 
 
+@pytest.mark.long
 def test_where_nothing_is_missing_it_says_no_gain():
     """Trials simulated by the profile itself: whatever a network adds is wrong."""
     from mmgtune.motions import as_trial
@@ -187,6 +189,7 @@ def test_where_nothing_is_missing_it_says_no_gain():
     assert not result.hybrid.weights.W_3.any()
 
 
+@pytest.mark.long
 def test_losses_that_are_no_numbers_are_null_in_the_record(trained, tmp_path):
     spoiled = replace(trained, tried={15.0: [{"step": 8, "loss": float("nan"), "norm": float("inf"), "score": 1.0}]})
     write_learned(spoiled, tmp_path)

@@ -50,6 +50,7 @@ def test_the_share_that_made_the_trials_is_found(parts, made):
     assert by_share[0.4] < 0.01 < by_share[0.2] < by_share[0.0] == 1.0
 
 
+@pytest.mark.long
 def test_where_no_mixture_helps_the_better_part_is_kept(parts):
     """Trials that the model of forces sailed itself."""
     profile, net = parts
@@ -80,6 +81,7 @@ def other(parts):
     return replace(drawn, **alike, mirrored=True)
 
 
+@pytest.mark.long
 def test_several_networks_drive_her_together(parts, other):
     """The share of trials made by both is found only with both, and what they were trained on is told together."""
     profile, net = parts

@@ -148,6 +148,7 @@ def test_a_lag_follows_the_motion_from_the_beginning_of_the_window(trials):
         np.testing.assert_allclose(lost[:, column], behind - now, atol=0.05 * np.abs(now).max())
 
 
+@pytest.mark.long
 def test_tuned_coefficients_count_before_any_term(trials):
     """What a coefficient that was tuned would give is no missing physics."""
     profile = load_profile("suzaku")
@@ -246,6 +247,7 @@ def sailed(hybrid, speed, n, rudder, seconds=600.0, step=2.0):
     return [one.states[0, 0] for one in both]
 
 
+@pytest.mark.daily("1.0--1.0")
 @pytest.mark.parametrize(
     ("speed", "n", "rudder"), [(1.0, 1.0, np.radians(35.0)), (1.0, -1.0, 0.0), (2.0, 2.0, np.radians(20.0))]
 )

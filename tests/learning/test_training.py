@@ -90,9 +90,10 @@ def test_the_same_seed_gives_the_same_weights_and_another_others():
     assert np.abs(weights(a) - weights(other)).max() > 0.01
 
 
+@pytest.mark.daily("4-kept3")
 @pytest.mark.parametrize(
     ("after", "kept"),
-    [(1, {}), pytest.param(4, {}, marks=pytest.mark.long), pytest.param(1, ALL, marks=pytest.mark.long), (4, ALL)],
+    [(1, {}), (4, {}), (1, ALL), (4, ALL)],
 )
 def test_resumed_equals_not_interrupted(tmp_path, after, kept):
     """Stopped in the first seed or in the second, and gone on: the same bits."""
@@ -116,7 +117,8 @@ def test_resumed_equals_not_interrupted(tmp_path, after, kept):
     assert [one.to_dict() for one in second.members] == [one.to_dict() for one in whole.members]
 
 
-@pytest.mark.parametrize("kept", [{}, pytest.param(ALL, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("kept", [{}, ALL])
 def test_under_one_compiled_step_networks_become_the_same(monkeypatch, kept):
     """As on a GPU, here on a processor: to the rounding of single precision."""
     options = replace(SMALL, seeds=2, **kept)
@@ -179,7 +181,8 @@ def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
         learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path / "other", resume=True)
 
 
-@pytest.mark.parametrize("type", ["1", "2", pytest.param("3", marks=pytest.mark.long)])
+@pytest.mark.daily("[1]")
+@pytest.mark.parametrize("type", ["1", "2", "3"])
 def test_where_no_run_is_kept_back_the_last_running_mean_of_the_weights_is_kept(type):
     options = replace(SMALL, type=type, **ALL)
     result = learn_rnn("suzaku", "suzaku", options)
@@ -256,7 +259,8 @@ def test_a_hybrid_needs_runs_kept_back():
     assert HybridOptions(validation=0.0, folds=2).folds == 2
 
 
-@pytest.mark.parametrize("type", ["2", pytest.param("3", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("type", ["2", "3"])
 def test_other_types_learn_too(type):
     result = learn_rnn("suzaku", "suzaku", replace(SMALL, type=type, steps=30, validate_every=10, rate=5e-3))
     losses = [row["loss"] for row in result.members[0].curve]
@@ -264,6 +268,7 @@ def test_other_types_learn_too(type):
     assert (result.network.memory is None) == (type == "2")
 
 
+@pytest.mark.long
 def test_mirrored_it_is_trained_and_scored_as_it_predicts(tmp_path):
     result = learn_rnn("suzaku", "suzaku", replace(SMALL, type="2", mirrored=True))
     write_learned(result, tmp_path)
@@ -305,7 +310,8 @@ def test_one_run_leaves_nothing_to_choose_by():
         learn_rnn("suzaku", one, SMALL)
 
 
-@pytest.mark.parametrize("kept", [ALL, pytest.param({}, marks=pytest.mark.long)])
+@pytest.mark.daily("False-kept0")
+@pytest.mark.parametrize("kept", [ALL, {}])
 @pytest.mark.parametrize("at_once", [False, True])
 def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch, kept, at_once):
     """Gradients that are no numbers for a while: training goes back to the last good state at half the rate."""

@@ -15,6 +15,7 @@ PUBLISHED = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not DATA.is_dir(), reason=f"no measured data at {DATA}; MMGTUNE_DATA names their folder")
 def test_scores_before_and_after_tuning(tmp_path):
     logs = sorted(DATA.glob("*/*.csv"))

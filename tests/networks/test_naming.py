@@ -50,6 +50,7 @@ def test_a_folder_of_a_training_is_its_model(models):
             load_profile(models / name)
 
 
+@pytest.mark.long
 def test_trials_of_another_ship_are_told(models):
     """Scores of a network on trials of a ship that it was not trained for mean little."""
     from mmgtune import validate
@@ -64,6 +65,7 @@ def test_trials_of_another_ship_are_told(models):
         assert [sum("'another'" in one for one in of) for of in notes] == [told, told]
 
 
+@pytest.mark.long
 def test_validate_on_voyages_takes_them(models):
     from mmgtune.model import Model
     from tools.generate_voyage import make_voyage

@@ -176,6 +176,7 @@ def test_the_side_that_no_trial_shows_is_to_be_sailed_and_it_keeps_the_promise(s
     assert again.best.shrinks < plan.best.shrinks
 
 
+@pytest.mark.long
 def test_the_room_of_particles_is_that_they_were_drawn_in(ship, particles):
     room = room_of(particles)
     assert room.names == particles.names
@@ -210,6 +211,7 @@ def test_the_command_has_a_table_and_json(desk):
     assert document["question"]["unit"] == "m"
 
 
+@pytest.mark.long
 def test_a_plan_with_a_folder_has_a_report(desk):
     arguments = ("plan", "bands", "--question", QUESTION, "--kind", "straight", "--no-half-speed", "--out", "plan")
     ended = run(*arguments, cwd=desk)

@@ -23,6 +23,7 @@ def whole():
     return leave_out_with_bands("suzaku", "suzaku", OPTIONS)
 
 
+@pytest.mark.long
 def test_every_run_is_held_against_bands_that_have_not_seen_it(whole, monkeypatch):
     trials = load_trials("suzaku")
     assert set(whole.bands.by_run) == set(trials.tune)

@@ -147,6 +147,7 @@ def test_a_search_stays_within_the_room():
     assert np.allclose(mode.z, [1.0, *others], atol=1e-9)
 
 
+@pytest.mark.daily("1005-2.0")
 @pytest.mark.parametrize(
     ("seed", "size", "sailed", "stuck_at", "found_at"),
     [

@@ -106,6 +106,7 @@ def test_what_it_would_refuse_has_no_plan(trials):
         plan_posterior("suzaku", replace(trials, tune=()), OPTIONS)
 
 
+@pytest.mark.long
 def test_particles_lie_beside_what_is_in_the_folder_and_are_not_replaced_unasked(tmp_path):
     trial = str(folder("trials") / "suzaku" / "turn_p35.parquet")
     few = ("posterior", "-t", trial, "--without", ",".join(NARROW), "--particles", "20", "--quiet", "--out", "here")

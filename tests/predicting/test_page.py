@@ -36,6 +36,7 @@ def page(tmp_path_factory: Any, browser: Any) -> Path:
     return render(folder)[0]
 
 
+@pytest.mark.daily("360-light")
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [360, 1200])
 def test_it_opens_clean_on_every_screen(browser: Any, page: Path, scheme: str, width: int) -> None:

@@ -77,6 +77,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.daily("suzaku-", "vectwin_3m-")
 @pytest.mark.parametrize("template", [True, False])
 @pytest.mark.parametrize("change", CHANGES)
 @pytest.mark.parametrize("name", profile_names())

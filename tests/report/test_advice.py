@@ -55,6 +55,7 @@ def paste(command: str, cwd: Path, tmp_path: Path, quick: Sequence[str] = QUICK)
     assert ended.code == 0, (command, ended.err)
 
 
+@pytest.mark.daily("validate", "simulate")
 @pytest.mark.parametrize(
     "name", [pytest.param("diagnosis", marks=pytest.mark.long), "leave-out", "validate", "simulate"]
 )
@@ -95,6 +96,7 @@ def test_commands_of_a_fit_work_when_pasted(tmp_path: Path, monkeypatch: pytest.
         paste(command, tmp_path, tmp_path, ("simulate", *(("fit",) if "--force" in command else ())))
 
 
+@pytest.mark.long
 def test_commands_of_a_sweep_work_when_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run("sweep", *QUICKLY, "--ar", "0.1,0.2", "--out", "a run", cwd=tmp_path).code == 0
@@ -153,6 +155,7 @@ def test_commands_of_a_comparison_of_profiles_work_when_pasted(more: dict[str, P
         paste(command, ROOT, tmp_path)
 
 
+@pytest.mark.long
 def test_commands_of_a_comparison_of_models_work_when_pasted(tmp_path: Path) -> None:
     asked = ("compare", "suzaku_fam", "suzaku", "suzaku", "suzaku", "--only", "turning", "--out", "a run")
     assert run(*asked, cwd=tmp_path).code == 0
@@ -188,6 +191,7 @@ def test_commands_of_a_check_work_when_pasted(more: dict[str, Path], tmp_path: P
         paste(command, ROOT, tmp_path, ())
 
 
+@pytest.mark.long
 def test_commands_of_voyages_work_when_pasted(voyages_folder: Path, tmp_path: Path) -> None:
     commands = commands_of(voyages_folder)
     assert [shlex.split(one)[1] for one in commands] == ["validate", "simulate"]

@@ -104,6 +104,7 @@ def test_fit_opens_clean_and_draws(browser: Any, fit_folder: Path, scheme: str) 
         assert contrast(ink, paper) > 5.0
 
 
+@pytest.mark.daily("dark")
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_colours_of_text_can_be_read(browser: Any, fit_folder: Path, scheme: str) -> None:
     with Visit(browser, fit_folder / "report.html", color_scheme=scheme) as visit:
@@ -139,6 +140,7 @@ def test_dragging_across_a_history_rescales_all_and_comes_back(browser: Any, fit
         assert visit.complaints == []
 
 
+@pytest.mark.long
 def test_all_by_keyboard(browser: Any, fit_folder: Path) -> None:
     with Visit(browser, fit_folder / "report.html") as visit:
         viewer, keys = "document.querySelector('.viewer')", visit.page.keyboard
@@ -235,6 +237,7 @@ def test_without_script(browser: Any, fit_folder: Path) -> None:
         assert visit.page.locator("noscript p").is_visible()
 
 
+@pytest.mark.daily("390")
 @pytest.mark.parametrize("width", [390, 1400])
 def test_the_buttons_over_a_track_hide_none_of_it(browser: Any, fit_folder: Path, width: int) -> None:
     dark = """() => {
@@ -252,6 +255,7 @@ def test_the_buttons_over_a_track_hide_none_of_it(browser: Any, fit_folder: Path
         assert visit.page.evaluate(dark) == 0
 
 
+@pytest.mark.daily("360")
 @pytest.mark.parametrize("width", [360, 768, 1280])
 def test_no_sideways_scrolling(browser: Any, fit_folder: Path, sweep_folder: Path, width: int) -> None:
     for folder in (fit_folder, sweep_folder):
@@ -290,6 +294,7 @@ def test_printing(browser: Any, fit_folder: Path) -> None:
         assert visit.page.locator("#tracks-static svg").first.is_visible()
 
 
+@pytest.mark.long
 def test_heads_of_tables_are_printed_with_their_rows(browser: Any, fit_folder: Path) -> None:
     """On every page that a table goes over, and never alone at the end of one."""
     style = "([name, property]) => getComputedStyle(document.querySelector(name))[property]"
@@ -307,6 +312,7 @@ def test_heads_of_tables_are_printed_with_their_rows(browser: Any, fit_folder: P
         assert {key: visit.page.evaluate(style, list(key)) for key in wanted} == wanted
 
 
+@pytest.mark.long
 def test_colour_scheme_can_change_while_open(browser: Any, fit_folder: Path) -> None:
     drawn = "document.querySelector('.track > canvas').toDataURL()"
     with Visit(browser, fit_folder / "report.html", color_scheme="light") as visit:
@@ -329,6 +335,7 @@ def test_hostile_names_are_harmless(browser: Any, tmp_path: Path) -> None:
         assert visit.page.evaluate(OVERFLOW) == 0
 
 
+@pytest.mark.long
 def test_sweep_leads_to_its_runs(browser: Any, sweep_folder: Path) -> None:
     with Visit(browser, sweep_folder / "report.html") as visit:
         assert visit.complaints == []
@@ -352,6 +359,7 @@ def test_structure_for_screen_readers(browser: Any, fit_folder: Path) -> None:
         assert visit.page.get_by_role("slider", name="Time").count() == 1
 
 
+@pytest.mark.daily("light-390")
 @pytest.mark.parametrize("width", [390, 1280])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_voyages_open_clean(browser: Any, voyages_folder: Path, width: int, scheme: str) -> None:
@@ -367,6 +375,7 @@ def test_voyages_open_clean(browser: Any, voyages_folder: Path, width: int, sche
         assert visit.ink(".track > canvas") > 5_000
 
 
+@pytest.mark.long
 def test_hostile_names_of_voyages_are_harmless(browser: Any, tmp_path: Path) -> None:
     name = "</script><img src=x onerror=alert(1)>"
     folder = fake_run.make_voyages(tmp_path / "run", model=name, id="<svg onload=alert(1)>")

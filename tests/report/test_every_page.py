@@ -53,6 +53,7 @@ def test_every_kind_is_here(runs: dict[str, Path]) -> None:
     assert files == {one.file for one in KINDS for folder in runs.values() if (folder / one.file).is_file()}
 
 
+@pytest.mark.daily("diagnosis", "trials")
 @pytest.mark.parametrize("name", PAGES_NOW)
 def test_screens(browser: Any, runs: dict[str, Path], name: str) -> None:
     rules = axe.script() if _has_axe() else ""
@@ -104,6 +105,7 @@ def _has_axe() -> bool:
     return True
 
 
+@pytest.mark.daily("diagnosis")
 @pytest.mark.parametrize("name", OF_EVERY_BLOCK)
 def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
     with Visit(browser, runs[name] / "report.html") as visit:
@@ -118,6 +120,7 @@ def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
         assert visit.page.evaluate(empty) == 0  # no heading stands alone
 
 
+@pytest.mark.daily("diagnosis")
 @pytest.mark.parametrize("name", PAGES_NOW)
 def test_the_keyboard_reaches_everything(browser: Any, runs: dict[str, Path], name: str) -> None:
     with Visit(browser, runs[name] / "report.html", viewport={"width": 390, "height": 844}) as visit:
@@ -178,6 +181,7 @@ def test_fragments_for_notebooks(runs: dict[str, Path]) -> None:
         assert text.count("<div") == text.count("</div>")
 
 
+@pytest.mark.long
 def test_hostile_names_stay_inert_everywhere(browser: Any, runs: dict[str, Path], tmp_path: Path) -> None:
     for name in ("leave-out", "diagnosis", "validate", "check", "comparison", "learning", "fleet"):
         folder = tmp_path / name

@@ -51,6 +51,7 @@ def payload_of(folder: Path) -> dict[str, Any]:
     return payload
 
 
+@pytest.mark.long
 def test_the_record_names_the_inputs(run: Path) -> None:
     record = json.loads((run / "fit.json").read_text(encoding="utf-8"))
     assert [one["name"] for one in record["inputs"]] == INPUTS

@@ -42,6 +42,7 @@ def test_least_squares_only(tmp_path: Path) -> None:
     assert not (folder / "figures" / "convergence.svg").exists()
 
 
+@pytest.mark.long
 def test_no_history_file_and_a_figure_left_from_before(tmp_path: Path) -> None:
     data, history, motions = fake_run.edited()
     folder = fake_run.write_fit(tmp_path / "run", data, history, motions)

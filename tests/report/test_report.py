@@ -120,6 +120,7 @@ def test_options_are_named_as_a_reader_types_them(fit_folder: Path, page: str) -
     assert "--initial estimated removes that." in (fit_folder / "report.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_same_run_same_bytes(fit_folder: Path, tmp_path: Path) -> None:
     again = tmp_path / "elsewhere"
     shutil.copytree(fit_folder, again, ignore=shutil.ignore_patterns("report*", "figures"))

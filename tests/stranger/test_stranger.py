@@ -77,6 +77,7 @@ def test_sets_are_always_the_same(name: str) -> None:
         assert np.array_equal(one.delta, other.delta)
 
 
+@pytest.mark.daily("shallow", "eddy", "current", "nothing")
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if not case.sensors and not case.rough][::7])
 def test_files_are_sound_where_instruments_are(name: str, tmp_path: Path) -> None:
     case = CASES[name]

@@ -34,6 +34,7 @@ def warnings_of_set(trials: dict[str, Trial]) -> list[str]:
     return [f"{name}: {f.what}" for name, findings in found.items() for f in findings if f.severity == "warning"]
 
 
+@pytest.mark.daily("turn_p20")
 @pytest.mark.parametrize("name", SUZAKU)
 @pytest.mark.parametrize(("channels", "factor"), [("n", 1.944), ("n", 1 / 1.944), ("n", 10.0), ("uv_m", 0.514)])
 def test_one_of_a_set_in_another_unit(name: str, channels: str, factor: float) -> None:
@@ -158,6 +159,7 @@ def test_speed_against_length() -> None:
     assert not warnings_of(trial)
 
 
+@pytest.mark.daily("kvlcc2")
 @pytest.mark.parametrize(
     ("folder", "preset", "ship", "step"),
     [
@@ -227,6 +229,7 @@ def test_positions_that_only_seem_to_jump(seed: int) -> None:
         assert not [one for one in warnings_of(other) if "position jumps" in one]
 
 
+@pytest.mark.long
 def test_results_say_what_is_odd_about_their_trials() -> None:
     assert oddities(SUZAKU, L_PP) == []
     gap = replace(SUZAKU["turn_p35"], y=np.where(SUZAKU["turn_p35"].t > 400.0, np.nan, SUZAKU["turn_p35"].y))

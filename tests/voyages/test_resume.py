@@ -115,6 +115,7 @@ def test_killed_in_the_middle_and_resumed(logs, tmp_path):
     assert "nothing to resume" in nothing.err
 
 
+@pytest.mark.long
 def test_ctrl_c_says_how_to_go_on(logs, tmp_path):
     before = "import mmgtune.cli.progress as p; p.Progress.on_share = lambda self, a, b, id: id == 'b' and sent()"
     arguments = ("validate", "suzaku", str(logs), "--no-report", "--quiet", "--out", "run")

@@ -280,6 +280,7 @@ def test_stopped_between_portions(voyage_file, monkeypatch):
     assert result.verdict().startswith("Stopped before its end: ")
 
 
+@pytest.mark.daily("2")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c(voyage, tmp_path, number):
     """What is done so far is written, marked interrupted, and the exit code says so."""

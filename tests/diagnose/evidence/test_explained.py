@@ -6,6 +6,7 @@ import pytest
 from mmgtune.diagnose.evidence import explain_forces, noise_share, residual_forces, share_explained
 
 
+@pytest.mark.long
 def test_wrong_yaw_damping_is_explained_by_yaw_rate(damped, plain):
     found = [residual_forces(damped, trial) for trial in plain]
     shares = explain_forces(found)

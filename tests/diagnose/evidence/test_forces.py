@@ -49,6 +49,7 @@ def test_without_noise_hardly_anything_is_left(suzaku):
         assert np.all(np.sqrt(np.mean(residual_forces(suzaku, trial).prime ** 2, axis=0)) < 2e-4)
 
 
+@pytest.mark.long
 def test_wrong_yaw_damping_shows_as_a_moment_by_yaw_rate(damped, plain):
     found = [residual_forces(damped, trial) for trial in plain]
     moment = np.concatenate([f.prime[:, 2] for f in found])
@@ -170,6 +171,7 @@ def test_too_little_to_go_by_is_said(suzaku, plain):
         residual_forces(suzaku, replace(plain[0], u=u))
 
 
+@pytest.mark.long
 def test_the_smoothing_knows_what_noise_it_leaves(suzaku, plain):
     clean = make_trials(suzaku, noise=0.0)
     for noisy, true in zip(plain, clean, strict=True):
