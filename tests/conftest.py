@@ -46,6 +46,15 @@ def pytest_xdist_auto_num_workers() -> int:
     return 1 + (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
 
 
+LONGEST_NAME = 100
+"""Characters of a text that a case is called by."""
+
+
+def pytest_make_parametrize_id(val: object, argname: str) -> str | None:
+    """Short names for cases of long texts, as some hostile files are."""
+    return f"{argname} of {len(val)}" if isinstance(val, str | bytes) and len(val) > LONGEST_NAME else None
+
+
 @pytest.hookimpl(tryfirst=True)  # before the plugin of the workers reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that share what took long stay together, in one worker; what takes longest comes first, so that no worker
@@ -61,10 +70,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("long")
         if item.get_closest_marker("browser"):  # once more where chromium was stuck
             item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=["TargetClosedError", "TimeoutError"]))
-        shared, file = _shared(item), times.file_of(item.nodeid)
-        if "module" in shared and not item.get_closest_marker("xdist_group"):
-            item.add_marker(pytest.mark.xdist_group(file))
-        if max(taken.get(item.nodeid, 0.0), taken.get(file, 0.0) if shared else 0.0) >= times.SLOW:
+        shared = _shared(item)
+        if any(scope == "module" for _, scope in shared) and not item.get_closest_marker("xdist_group"):
+            item.add_marker(pytest.mark.xdist_group(times.file_of(item.nodeid)))
+        begun = max((times.beginning(taken, place) for place, _ in shared), default=0.0)
+        if max(taken.get(item.nodeid, 0.0), begun) >= times.SLOW:
             item.add_marker("slow")
         group = item.get_closest_marker("xdist_group")
         together.setdefault(group.args[0] if group else item.nodeid, []).append(item)
@@ -107,12 +117,12 @@ def _case(item: pytest.Item) -> str:
     return f"[{item.callspec.id}]" if isinstance(item, pytest.Function) and hasattr(item, "callspec") else ""
 
 
-def _shared(item: pytest.Item) -> set[str]:
-    """Scopes of the fixtures of a test that are made once for several, which another worker would make again; those of
-    this file are made in no time."""
+def _shared(item: pytest.Item) -> set[tuple[str, str]]:
+    """Of fixtures of a test that are made once for several, which another worker would make again: the file or folder
+    they are of, and their scope; those of this file are made in no time."""
     fixtures = item._fixtureinfo.name2fixturedefs if isinstance(item, pytest.Function) else {}
     own = [one for found in fixtures.values() for one in found if one.baseid not in ("", "tests")]
-    return {one.scope for one in own if one.scope != "function"}
+    return {(one.baseid, one.scope) for one in own if one.scope != "function"}
 
 
 def _profiles() -> list[object]:

@@ -20,9 +20,16 @@ def test_what_took_long_is_written(tmp_path, monkeypatch):
         ("tests/a.py::one[x@y]@tests/a.py", "call", 0.15),
         ("tests/a.py::one[x@y]@tests/a.py", "teardown", 0.1),
         ("tests/a.py::two", "setup", 0.01),
-        ("tests/a.py::two", "call", 0.05),
+        ("tests/a.py::two", "call", 0.03),
         ("tests/b.py::three@group", "call", 3.0),
     ):
         writer.pytest_runtest_logreport(SimpleNamespace(nodeid=name, when=when, duration=seconds))
     writer.pytest_sessionfinish()
-    assert times.read() == {"tests/a.py": 2.0, "tests/a.py::one[x@y]": 0.2, "tests/b.py::three": 3.0}
+    assert times.read() == {"tests/a.py": 2.04, "tests/a.py::one[x@y]": 0.25, "tests/b.py::three": 3.0}
+
+
+def test_a_test_begins_with_what_is_made_for_its_folder():
+    taken = {"tests/a/b.py": 2.0, "tests/a/c.py": 7.0, "tests/a/c.py::one": 9.0, "tests/d.py": 8.0}
+    assert times.beginning(taken, "tests/a") == 7.0
+    assert times.beginning(taken, "tests/a/b.py") == 2.0
+    assert times.beginning(taken, "tests/e") == 0.0

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-SLOW = 0.1
+SLOW = 0.05
 """Seconds from which a test is slow, and listed."""
 
 FILE = Path(__file__).with_name("times.json")
@@ -26,6 +26,11 @@ def read() -> dict[str, float]:
 def file_of(name: str) -> str:
     """The file of a test."""
     return name.partition("::")[0]
+
+
+def beginning(taken: dict[str, float], place: str) -> float:
+    """What fixtures took longest that are of a file, or of files in a folder."""
+    return max((seconds for name, seconds in taken.items() if "::" not in name and name.startswith(place)), default=0.0)
 
 
 class Writer:
@@ -46,5 +51,5 @@ class Writer:
 
     def pytest_sessionfinish(self) -> None:
         """Sorted by name, so that changes are read easily."""
-        listed = {name: round(s, 1) for name, s in sorted(self.seconds.items()) if s >= SLOW}
+        listed = {name: round(s, 2) for name, s in sorted(self.seconds.items()) if s >= SLOW}
         FILE.write_text(json.dumps(listed, indent=0, ensure_ascii=False) + "\n")
