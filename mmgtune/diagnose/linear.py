@@ -70,11 +70,17 @@ class Tuned:
         directions, sizes, _ = np.linalg.svd(loose - Q @ (Q.T @ loose), full_matrices=False)
         return cls(Q, directions, 1.0 / np.sqrt(1.0 + sizes**2))
 
-    def out_of(self, columns: FloatArray) -> FloatArray:
+    def out_of(self, columns: FloatArray, out: FloatArray | None = None) -> FloatArray:
         """Re-tuning projected out of ``columns`` (n_rows, k); independent noise of variance 1 and coefficients with
-        leeway together have variance 1 in the result."""
-        rest = columns - self.free @ (self.free.T @ columns)
-        return np.asarray(rest - self.loose @ ((1.0 - self.left)[:, None] * (self.loose.T @ rest)))
+        leeway together have variance 1 in the result.
+
+        out  where that is written to, ``columns`` themselves perhaps
+        """
+        explained = self.free @ (self.free.T @ columns)
+        rest = np.subtract(columns, explained, out=out)
+        np.matmul(self.loose, (1.0 - self.left)[:, None] * (self.loose.T @ rest), out=explained)
+        rest -= explained
+        return np.asarray(rest)
 
 
 def measured_rows(cases: IntArray, n_rows: int) -> BoolArray:
@@ -281,8 +287,9 @@ class Steps:
     def slopes(self, values: FloatArray) -> FloatArray:
         """(n_rows, n_moved) out of whitened residuals at ``columns``."""
         n = len(self.moved)
-        over = np.maximum(self.plus + self.minus, 1e-300)
-        return np.asarray((values[:, 1 : 1 + n] - values[:, 1 + n :]) / over)
+        found = values[:, 1 : 1 + n] - values[:, 1 + n :]
+        found /= np.maximum(self.plus + self.minus, 1e-300)
+        return np.asarray(found)
 
 
 def linearise(
@@ -308,8 +315,9 @@ def linearise(
     n_free = len(point.names)
     steps = Steps.about(at, n_free, np.array([typical(bench, name) for name in wanted]), inwards(null))
     runs = problem.residuals(steps.columns(at)).T
-    values = bench.noise.apply(steps.without_lost(runs))
-    slopes = steps.slopes(values) * np.array([unit_of(bench, names[i]) for i in steps.moved])
+    values = bench.noise.apply(steps.without_lost(runs), out=runs)
+    slopes = steps.slopes(values)
+    slopes *= np.array([unit_of(bench, names[i]) for i in steps.moved])
     n_moved, ends = len(steps.moved), steps.ends
     by_offset = bench.noise.apply(flat_where_lost(offset_derivatives(bench, point)))
 
@@ -320,7 +328,7 @@ def linearise(
         for base in dict.fromkeys(varying)
     }
     tuned, left[:, 0] = _tuning(bench, point, apart, left[:, 0], left[:, 1 : 1 + n_free])
-    left = tuned.out_of(left)
+    left = tuned.out_of(left, out=left)
     chosen = (*apart, *wanted)
     at_chosen = [1 + names.index(name) for name in chosen]
     signature = left[:, at_chosen]

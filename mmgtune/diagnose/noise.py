@@ -100,9 +100,12 @@ class NoiseModel:
         moving = [noise.variance for channel, noise in self.channels.items() if channel not in POSITIONS]
         return max(moving or [noise.variance for noise in self.channels.values()], default=0.0) > NEAR
 
-    def apply(self, values: FloatArray) -> FloatArray:
-        """Residuals (n_residuals, ...) or their derivatives with noise of variance 1 and no memory."""
-        out = values / self._sigma.reshape(-1, *(1,) * (values.ndim - 1))
+    def apply(self, values: FloatArray, out: FloatArray | None = None) -> FloatArray:
+        """Residuals (n_residuals, ...) or their derivatives with noise of variance 1 and no memory.
+
+        out  where they are written to, ``values`` themselves perhaps: many columns are too much to hold twice
+        """
+        freed = []
         for channel, rows in self._series:
             noise = self.channels[channel]
             if noise.fading <= 0.0:
@@ -111,8 +114,11 @@ class NoiseModel:
             with np.errstate(invalid="ignore", over="ignore"):
                 white = _filtered([1.0 / sigma, -phi / sigma], [1.0, theta], values[rows])
                 white[0] *= sigma / np.sqrt(noise.variance)
-            out[rows] = white
-        return out
+            freed.append((rows, white))
+        found = np.divide(values, self._sigma.reshape(-1, *(1,) * (values.ndim - 1)), out=out)
+        for rows, white in freed:
+            found[rows] = white
+        return np.asarray(found)
 
     def restore(self, values: FloatArray) -> FloatArray:
         """Whitened residuals (n_residuals, ...) back in the units and with the memory they had before ``apply``."""

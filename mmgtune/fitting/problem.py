@@ -390,14 +390,15 @@ class FitProblem:
         The rows added are what is known of the offsets themselves: without them the rest would count for less than it
         says.  Whatever is fitted to the columns that come back is fitted together with the offsets.
         """
-        parts = []
+        left = np.empty((len(values) + 6 * len(self.cases), values.shape[1]))
         for case, rows in enumerate(self.rows_of_cases):
             root = np.sqrt(prior[case])
-            added = np.zeros((6, values.shape[1]))
+            own = left[rows.start + 6 * case : rows.stop + 6 * (case + 1)]
+            own[:-6], own[-6:] = values[rows], 0.0
             if offsets is not None:
-                added[:, 0] = root * offsets[case]
+                own[-6:, 0] = root * offsets[case]
             Q, _ = np.linalg.qr(np.vstack([by_offset[rows], np.diag(root)]))
-            own = np.vstack([values[rows], added])
-            parts.append(own - Q @ (Q.T @ own))
-        parts.append(values[self.n_residuals :])
-        return np.vstack(parts)
+            own -= Q @ (Q.T @ own)
+        beside = values[self.n_residuals :]
+        left[len(left) - len(beside) :] = beside
+        return left
