@@ -321,10 +321,13 @@ def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[s
     rough = formed or any(one.by for one in others)
     if not plain or rough or size_of(bench, found.final, cause) < WORTH:
         return False
-    size, null = sizes[cause.names[0]], cause.effect.parameters[cause.variant[0]].null
-    if size.low is None or size.high is None or not math.isfinite(null):
+    size, parameter = sizes[cause.names[0]], cause.effect.parameters[cause.variant[0]]
+    if size.low is None or size.high is None:
         return False
-    return abs(size.value - null) > SURELY * 0.5 * (size.high - size.low)
+    value, ends, null = size.value, np.array([size.low, size.high]), parameter.null
+    if parameter.chart == "reciprocal":
+        value, ends, null = 1.0 / value, 1.0 / ends, 0.0
+    return bool(abs(value - null) > SURELY * 0.5 * float(np.ptp(ends)))
 
 
 def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, sizes: Mapping[str, Estimate]) -> float:

@@ -126,7 +126,8 @@ def test_what_is_surely_there_beside_exact_causes_is_noticed():
         ("rudder-gain", ("starboard", "port"), "current", 1.07, 0.02, "", False),
         ("rudder-gain", ("factor",), "wave-drift", 1.07, 0.02, "", False),  # what waves leave may look like it
         ("rudder-gain", ("factor",), "wind", 1.07, 0.02, "", False),
-        ("rudder-stall", ("angle",), "current", 0.5, 0.02, "", False),  # none is at infinity
+        ("shallow-water", ("depth",), "current", 9.0, 1.3, "", True),  # none is at infinity
+        ("rudder-stall", ("angle",), "current", 0.5, 0.2, "", False),
     ],
 )
 def test_a_cause_is_surely_there_three_half_widths_from_none_beside_exact_ones(
