@@ -50,6 +50,10 @@ FORM, FORM_IF_ROUGH, FORM_OF_TERM = 0.0005, 0.003, 0.02
 """Share of the error that a cause leaves whose form is 2 % off, one whose formula is no better than 5 %, and, to values
 that differ from run to run and bend to all that is left, one of many terms, which is the nearest to what there is."""
 
+FORM_OF_HULL = 0.05
+"""Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it: formulas of shallow
+water differ by a fifth, and what one leaves of the other is a term."""
+
 HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
 share of the error there up to which one that shows in a channel of its own may seem to add to others."""
@@ -424,9 +428,7 @@ def _of(
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
-    form = FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
-    if cause.by and any(one.effect.one_of_many for one in found.causes):
-        form = FORM_OF_TERM
+    form = _form_of_others(found, cause)
     own = {}
     for k, name in enumerate(STATES):
         by_all, by_one = errors[0, k] - errors[2, k], errors[1, k] - errors[2, k]
@@ -442,6 +444,15 @@ def _of(
         shown = [STATES.index(name) for name in logs]
         good = float(np.sum((errors[1] - errors[2])[shown])) / scale
     return Contribution(seen, share, channels, changes, form, own, whole, bool(cause.by), beside_runs, good=good)
+
+
+def _form_of_others(found: Found, cause: Hypothesis) -> float:
+    """Share of the error that the other causes may leave by their form."""
+    if cause.effect.one_of_many and any(one.effect.rough and not one.effect.one_of_many for one in found.causes):
+        return FORM_OF_HULL
+    if cause.by and any(one.effect.one_of_many for one in found.causes):
+        return FORM_OF_TERM
+    return FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:

@@ -15,7 +15,15 @@ from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose, saying
 from mmgtune.diagnose import contributions as contributed
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause, Trace
-from mmgtune.diagnose.contributions import Contribution, _is_sure, removed_by, set_aside, squares, takes_the_rest
+from mmgtune.diagnose.contributions import (
+    Contribution,
+    _form_of_others,
+    _is_sure,
+    removed_by,
+    set_aside,
+    squares,
+    takes_the_rest,
+)
 from mmgtune.diagnose.doubted import Leading
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import Hypothesis, known_causes
@@ -190,6 +198,25 @@ def test_a_ship_lighter_than_her_profile_is_told_beside_waves(tmp_path):
     asked = DiagnoseOptions(effects=("loading", "wave-drift", "wind", "current"))
     said = diagnose(load_profile("suzaku"), load_trials(tmp_path), asked)
     assert {cause.tag for cause in said.causes} == {"loading", "wave-drift"}
+
+
+@pytest.mark.parametrize(
+    ("tag", "by", "beside", "share"),
+    [
+        ("hull-term", "", "shallow-water", 0.05),
+        ("hull-term", "", "rudder-offset", 0.003),
+        ("shallow-water", "", "hull-term", 0.003),
+        ("current", "trial", "hull-term", 0.02),
+        ("rudder-gain", "", "memory", 0.003),
+        ("rudder-gain", "", "current", 0.0005),
+    ],
+)
+def test_what_the_form_of_others_may_leave(tag, by, beside, share):
+    """In water of 1.35 draughts by another formula a hull term was found that was a part of its form."""
+    cause, other = (
+        Hypothesis(one, one.variants[0], by) for one, by in ((find_effect(tag), by), (find_effect(beside), ""))
+    )
+    assert _form_of_others(SimpleNamespace(causes=[cause, other]), cause) == share
 
 
 def test_a_cause_that_takes_all_that_others_leave_is_no_matter_of_their_form():
