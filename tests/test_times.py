@@ -11,6 +11,10 @@ def test_every_file_that_is_listed_is_there():
     } == set()
 
 
+def test_names_say_nothing_of_the_machine_they_were_written_on():
+    assert [name for name in times.read() if str(times.FILE.parents[1]) in name] == []
+
+
 def test_what_took_long_is_written(tmp_path, monkeypatch):
     monkeypatch.setattr(times, "FILE", tmp_path / "times.json")
     assert times.read() == {}

@@ -130,7 +130,7 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         (("effects",), ("unknown command 'effects' (mmgtune)", "", "--dry-run, which lists what would be")),
         (("learn", "foo"), ("unknown command 'foo' (mmgtune learn)", "known here: ", "write one of these")),
     ],
-    ids=lambda value: "-".join(value) if " " not in value[-1] else "",
+    ids=lambda value: "-".join(value).replace(str(TRIAL), TRIAL.name) if " " not in value[-1] else "",
 )
 def test_a_refusal_says_what_where_why_and_the_fix(tmp_path, monkeypatch, arguments, words):
     monkeypatch.chdir(tmp_path)
