@@ -21,7 +21,7 @@ COMPILED = ("simulate", "--trials", "suzaku", "--no-report", "--out", "out")
     [
         ("NUMBA_DISABLE_JIT", "1"),
         ("NUMBA_NUM_THREADS", "0"),
-        pytest.param("NUMBA_NUM_THREADS", "-1", marks=pytest.mark.long),
+        ("NUMBA_NUM_THREADS", "-1"),
     ],
 )
 def test_settings_that_numba_cannot_work_with(name, value, tmp_path):

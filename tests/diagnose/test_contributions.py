@@ -135,6 +135,7 @@ def test_what_is_surely_there_beside_exact_causes_is_noticed():
         ("rudder-gain", ("factor",), "wave-drift", 1.07, 0.02, "", False),  # what waves leave may look like it
         ("rudder-gain", ("factor",), "wind", 1.07, 0.02, "", False),
         ("shallow-water", ("depth",), "current", 9.0, 1.3, "", True),  # none is at infinity
+        ("shallow-water", ("depth",), "current", 9.0, 2.9, "", False),  # of its reciprocal
         ("rudder-stall", ("angle",), "current", 0.5, 0.2, "", False),
     ],
 )

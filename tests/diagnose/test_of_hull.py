@@ -34,7 +34,7 @@ OFF = {
 def diagnosed(folder, hidden, **ship):
     profile = load_profile("suzaku")
     write(simulate({name: factor * profile.value(name) for name, factor in ship.items()}, hidden, seed=5), folder)
-    return diagnose(profile, load_trials(folder), DiagnoseOptions(effects=("loading", "gyro-bias")))
+    return diagnose(profile, load_trials(folder), DiagnoseOptions(effects=("loading", "shallow-water", "gyro-bias")))
 
 
 def test_a_hull_far_off_is_no_loading(tmp_path):

@@ -207,13 +207,13 @@ def test_equations_are_shown(visit):
         "reference/commands.html",
         "reference/api/fitting.html",
         "hidden.html",
-        *(
-            pytest.param(name, marks=pytest.mark.long)
-            for name in (
-                "guides/calibrate.html", "nomenclature.html", "formats.html", "esso-osaka.html", "kvlcc2.html",
-                "limits.html", "changelog.html",
-            )
-        ),
+        "guides/calibrate.html",
+        "nomenclature.html",
+        "formats.html",
+        "esso-osaka.html",
+        "kvlcc2.html",
+        "limits.html",
+        "changelog.html",
     ],
 )  # fmt: skip
 def test_every_kind_of_page(visit, name):

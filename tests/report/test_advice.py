@@ -56,9 +56,7 @@ def paste(command: str, cwd: Path, tmp_path: Path, quick: Sequence[str] = QUICK)
 
 
 @pytest.mark.daily("validate", "simulate")
-@pytest.mark.parametrize(
-    "name", [pytest.param("diagnosis", marks=pytest.mark.long), "leave-out", "validate", "simulate"]
-)
+@pytest.mark.parametrize("name", ["diagnosis", "leave-out", "validate", "simulate"])
 def test_commands_work_when_pasted(more: dict[str, Path], name: str, tmp_path: Path) -> None:
     commands = commands_of(more[name])
     assert commands
