@@ -328,10 +328,8 @@ def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[s
     size, parameter = sizes[cause.names[0]], cause.effect.parameters[cause.variant[0]]
     if size.low is None or size.high is None:
         return False
-    value, ends, null = size.value, np.array([size.low, size.high]), parameter.null
-    if parameter.chart == "reciprocal":
-        value, ends, null = 1.0 / value, 1.0 / ends, 0.0
-    return bool(abs(value - null) > SURELY * 0.5 * float(np.ptp(ends)))
+    value, null, low, high = map(parameter.searched, (size.value, parameter.null, size.low, size.high))
+    return abs(value - null) > SURELY * 0.5 * abs(high - low)
 
 
 def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, sizes: Mapping[str, Estimate]) -> float:

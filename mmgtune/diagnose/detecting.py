@@ -69,8 +69,7 @@ def _limit(bench: Workbench, name: str, sizes: float) -> float | None:
     step = sizes * typical(bench, name) * float(bench.box.width[i])
     if any(i == size for size, _ in bench.box.polar):
         return step if step <= bench.box.high[i] else None
-    null = 0.0 if parameter.chart == "reciprocal" else parameter.null
-    value = null + step
-    if parameter.chart == "reciprocal":
-        return 1.0 / value if bench.box.low[i] < value <= bench.box.high[i] else None
-    return value if value <= bench.box.high[i] else None
+    value = parameter.searched(parameter.null) + step
+    if parameter.chart == "reciprocal" and value <= bench.box.low[i]:  # nothing happens that far
+        return None
+    return parameter.searched(value) if value <= bench.box.high[i] else None

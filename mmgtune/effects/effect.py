@@ -48,6 +48,11 @@ class Parameter(Field):
         if self.default is None:
             object.__setattr__(self, "default", self.null)
 
+    def searched(self, value: float) -> float:
+        """What a value is searched for by, and the value of that again: itself, or its reciprocal where the null is at
+        infinity.  ``bounds`` and ``typical`` are of this."""
+        return 1.0 / value if self.chart == "reciprocal" else value
+
 
 def factor_about_one(what: str, off: float, typical: float, source: str) -> Parameter:
     """A factor that changes nothing at 1, on what a sensor shows, an actuator does or a ship carries.

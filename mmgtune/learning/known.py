@@ -178,12 +178,12 @@ def _values(names: Sequence[str], effect: Effect, ship: Scale) -> Iterator[dict[
         for direction in 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS:
             yield {names[0]: parameter.typical(ship), names[1]: float(direction)}
         return
-    null = 0.0 if parameter.chart == "reciprocal" else parameter.null
+    null = parameter.searched(parameter.null)
     for end in parameter.bounds(ship):
         for k in range(SIZES):
             value = null + (end - null) * 0.5 ** (0.5 * k)
             if value != null:
-                yield {names[0]: 1.0 / value if parameter.chart == "reciprocal" else value}
+                yield {names[0]: parameter.searched(value)}
 
 
 def _told(effect: Effect, name: str) -> tuple[str, str]:
