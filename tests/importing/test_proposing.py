@@ -52,6 +52,24 @@ def test_disguises_of_bundled_trials(tmp_path):
     assert right > 0.97 * total
 
 
+@pytest.mark.parametrize(
+    ("direction", "unit"),
+    [
+        (lambda wave: 120.0 + wave, "deg"),
+        (lambda wave: 120.0 + 4.0 * wave, "deg"),
+        (lambda wave: 2.1 + 0.02 * wave, "rad"),
+    ],
+    ids=["deg, steady", "deg, unsteady", "rad"],
+)
+def test_a_wind_whose_name_says_no_unit(tmp_path, direction, unit):
+    """A wind that hardly turns was taken for radians, whatever its numbers."""
+    log = pd.read_csv(LOG, skiprows=2)
+    wave = np.sin(0.1 * np.arange(len(log)))
+    log["wind speed [m/s]"], log["wind dir"] = 6.0 + 0.5 * wave, direction(wave)
+    log.to_csv(tmp_path / "log.csv", index=False)
+    assert propose_map([tmp_path / "log.csv"]).guesses["wind_dir"].keys["unit"] == unit
+
+
 @pytest.mark.daily("kvlcc2-hsva")
 @pytest.mark.parametrize("name", [pytest.param(name, marks=needs(name)) for name in SETS])
 def test_disguises_of_measured_trials(tmp_path, name):

@@ -37,26 +37,27 @@ def wind(find: Finder) -> None:
 
 def _named_wind(find: Finder, tail: str) -> None:
     """One wind, by its names; how it counts, and whether it is the true one, by how steady it is."""
-    pair = [next((k for k in find.pool() if find.said[k] == f"wind_{what}{tail}"), None) for what in ("speed", "dir")]
-    speed, direction = pair
+    said = [next((k for k in find.pool() if find.said[k] == f"wind_{what}{tail}"), None) for what in ("speed", "dir")]
+    speed, direction = said
     if speed is None or direction is None:
         return
+    pair = speed, direction
     steady: dict[tuple[str, str], list[float]] = defaultdict(list)
     unit_asked = not find.units_said[speed]
-    chosen: dict[str, Any] = {}
-    for look in find.looks:
-        for one in candidates(look, (speed, direction), find.units_said):
-            if (one.speed, one.direction) != (speed, direction):
-                continue
-            chosen[one.points] = one
-            if one.unit == (find.units_said[speed] or "m/s"):
+    every = [
+        [one for one in candidates(look, pair, find.units_said) if (one.speed, one.direction) == pair]
+        for look in find.looks
+    ]
+    degrees = any(one.degrees for among in every for one in among)
+    for look, among in zip(find.looks, every, strict=True):
+        for one in among:
+            if one.degrees == degrees and one.unit == (find.units_said[speed] or "m/s"):
                 for kind, size in steadiness(look, one).items():
                     steady[kind, one.points].append(size)
     found = {key: float(np.median(many)) for key, many in steady.items()}
     if not found:
         return
     speed_unit = find.units_said[speed] or f'{MARK} "m/s" or "kn": which is {find.shown(speed)} in?'
-    degrees = next(iter(chosen.values())).degrees
     best = min(found, key=lambda one: found[one])
     kind_named = "apparent" if tail else "true"
     words = [f"its name says {kind_named} wind" if tail else "its name says wind"]

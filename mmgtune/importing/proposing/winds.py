@@ -13,6 +13,9 @@ from ...arrays import FloatArray
 from .look import Look
 
 SPEED_UNITS = ("m/s", "kn", "km/h")
+TURN = 7.0
+"""Angle beyond which there is no need to go in radians: a little more than a turn."""
+
 CLOSES = 0.1
 """Share of the apparent wind by which a triangle may miss."""
 
@@ -66,19 +69,23 @@ def candidates(look: Look, among: Sequence[int], units_said: Sequence[str]) -> l
             continue
         if units_said[direction] not in ("", "deg", "rad") or np.nanmax(columns[speed], initial=0.0) > 150.0:
             continue
-        span = float(np.ptp(columns[direction][np.isfinite(columns[direction])]))
-        turn = look.windows.periods[direction]
-        for degrees in (True, False):
-            said = units_said[direction]
-            if (
-                (said and (said == "deg") != degrees)
-                or (turn and degrees != (turn > 7.0))
-                or (degrees and span < 7.0 and not said)
-            ):
-                continue
+        for degrees in _readings(look, direction, units_said[direction]):
             for unit in SPEED_UNITS if not units_said[speed] else (units_said[speed],):
                 found += [Wind(speed, direction, unit, degrees, points) for points in ("from", "to")]
     return found
+
+
+def _readings(look: Look, direction: int, said: str) -> list[bool]:
+    """Whether an angle may be in degrees (True) and in radians (False), the likelier first: by the unit it says, by the
+    jumps of a turn, and by its values: radians beyond a turn are those of a ship that went round."""
+    turn = look.windows.periods[direction]
+    if said or turn:
+        readings = [said == "deg"] if said else [True, False]
+        return [degrees for degrees in readings if not turn or degrees == (turn > TURN)]
+    values = look.windows.columns[direction]
+    if np.nanmax(np.abs(values), initial=0.0) <= TURN:
+        return [False]
+    return [True, False] if np.nanmax(values) - np.nanmin(values) >= TURN else [True]
 
 
 def triangles(look: Look, found: Sequence[Wind]) -> list[Triangle]:
