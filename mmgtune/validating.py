@@ -11,10 +11,11 @@ from typing import Any
 from .bands import Pooled, pooled, pooled_by
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem
+from .first_states import J_of_noise, in_words
 from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
 from .networks import named_ship
-from .objective import spread, varying
+from .objective import make_objective, spread, varying
 from .options import ParticleOptions, SimulationOptions, ValidateOptions
 from .options.choice import must_be
 from .predictor import Predictor, as_predictor, noted, particles_of, profile_of, words_of
@@ -152,10 +153,20 @@ def validate(
         if own and data.ship and data.ship != own:
             notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]
         scores = tuple(score(predictor, pieces, sigma)) if pieces else ()
+        notes += _of_noise(predictor, pieces, scores)
         stated = _stated(predictor, data, options.backend)
         bands = bands_of(predictor, pieces, sigma) if pieces else {}
         scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options, tuple(pieces), tuple(odd))
+
+
+def _of_noise(predictor: Predictor, pieces: Sequence[Trial], scores: Sequence[TrialScore]) -> list[str]:
+    """A note where the noise of first samples alone would bring a model to much of its J; none of other predictors."""
+    if not (pieces and profile_of(predictor)):
+        return []
+    of_noise = float(J_of_noise(predictor, pieces, make_objective(predictor.L_pp)).sum())
+    words = in_words(sum(one.J for one in scores), of_noise, "on these trials")
+    return [f"{words}; fits with initial=estimated, and diagnoses, take that out"] if words else []
 
 
 def sigma_of(data: TrialSet, sigma_from: str | None, called: str) -> dict[str, float]:

@@ -11,12 +11,14 @@ import sys
 import tempfile
 import traceback
 import warnings
+from pathlib import Path
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
-from ..errors import MmgtuneError, OptionError, OutputError, Problem, cannot_write_reason
+from ..errors import MmgtuneError, OptionError, OutputError, Problem, cannot_write_reason, reason
+from ..files import cannot_write
 from . import (
     check,
     cite,
@@ -139,7 +141,7 @@ def main() -> None:
     interrupts.handle(interrupts.stop_at_once("nothing was left half-written"))
     limit_width()
     streams = sys.stdout, sys.stderr
-    sys.stdout, sys.stderr = Piped(sys.stdout), Piped(sys.stderr)
+    sys.stdout, sys.stderr = Piped(sys.stdout, "standard output"), Piped(sys.stderr, "standard error")
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _say_warning  # type: ignore[assignment]
@@ -164,7 +166,8 @@ def _run() -> int:
                 say(f"error: {_in_its_lines(problem)}")
             return ExitCode.COULD_NOT_RUN
         except OSError as error:  # a full disk, say, anywhere the library did not expect one
-            say(f"error: {OutputError(Problem(cannot_write_reason(error)))}")
+            where = error.filename
+            say(f"error: {cannot_write(Path(str(where)), error) if where else OutputError(Problem(reason(error)))}")
             return ExitCode.COULD_NOT_RUN
         except Exception:
             with tempfile.NamedTemporaryFile(

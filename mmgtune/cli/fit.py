@@ -127,11 +127,14 @@ def next_steps(result: FitResult, profile: str, trials: str) -> list[str]:
     given = f"-p {quote(profile)} -t {quote(trials)}"
     tested = any(one.role == "test" for one in result.compared)
     runs = {one.trial.run for one in result.compared if one.role == "tune"}
+    steps = []
+    if result.bends_to_noise:
+        steps.append("Without the noise of first samples: the same again with --initial estimated")
     if result.misses:
-        return [f"It misses trials it was not tuned to; what is wrong: mmgtune diagnose {given}"]
-    if not tested and len(runs) > 1:
-        return [f"How it does on trials it was not tuned to: mmgtune leave-out {given}"]
-    return []
+        steps.append(f"It misses trials it was not tuned to; what is wrong: mmgtune diagnose {given}")
+    elif not tested and len(runs) > 1:
+        steps.append(f"How it does on trials it was not tuned to: mmgtune leave-out {given}")
+    return steps
 
 
 def bands_text(bands: Mapping[str, Any], folder: Path) -> str:

@@ -12,20 +12,11 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..trial import Trial
-from ..trial.kinematics import motion_noise
+from ..trial.noise import noise_of
 from ..trial.schema import MOTION
 
 LARGEST = 5.0
 """Offsets are kept within this many standard deviations."""
-
-
-def noise_of(trial: Trial) -> FloatArray:
-    """Standard deviation of white noise in x, y, psi, u, v_m, r: (6,), SI units.
-
-    What the file says, else what second differences show, in which a smooth motion hardly does, and rounding.
-    """
-    channels = zip(MOTION, trial.motion.T, strict=True)
-    return np.array([trial.noise.get(name, motion_noise(values)) for name, values in channels])
 
 
 def deviations(trials: Sequence[Trial], scales: FloatArray) -> FloatArray:

@@ -13,6 +13,8 @@ from ..circumstances import notes_on
 from ..components import split_name
 from ..displayed import Plotted
 from ..documents import finite, finite_values
+from ..first_states import MUCH
+from ..first_states import in_words as noise_in_words
 from ..model import Model, Tie
 from ..options import FitOptions
 from ..phrases import capital
@@ -88,6 +90,8 @@ class FitResult(Plotted):
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
     beside       terms of the objective beside J; None where there are none
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
+    J_of_noise    J that the noise of first samples alone would bring a faultless model to, by role of the trials;
+                  empty where initial states are estimated
     ties         coefficients that follow targets, see ``one_sided``
     stated       every stated index beside what the model makes of it
     interrupted  stopped by the user; the values are the best so far
@@ -102,6 +106,7 @@ class FitResult(Plotted):
     J: float
     J_before: float
     J_free_start: float | None
+    J_of_noise: Mapping[str, float]
     beside: Beside | None
     compared: tuple[TrialComparison, ...]
     stated: tuple[IndexComparison, ...]
@@ -149,6 +154,20 @@ class FitResult(Plotted):
             return False
         each = [sum(one.J["after"] for one in of) / sum(one.trial.n_samples for one in of) for of in (tests, tunes)]
         return any(one.J["after"] > one.J["before"] for one in tests) or each[0] > MISSED * each[1]
+
+    @property
+    def bends_to_noise(self) -> str:
+        """How much the noise of first samples has to do with J, in words; "" where it is little."""
+        if self.J_free_start is not None and self.J_free_start < MUCH * self.J:
+            return (
+                f"of J = {self.J:.4g} on the tune trials {self.J - self.J_free_start:.4g} comes from starting "
+                "each trial at its noisy first sample; initial=estimated removes that"
+            )
+        for role, of_noise in self.J_of_noise.items():
+            J = total(self.compared, role, "after")
+            if J is not None and (words := noise_in_words(J, of_noise, f"on the {role} trials")):
+                return f"{words}: coefficients bend to that noise, which initial=estimated takes out"
+        return ""
 
     @property
     def coverage(self) -> Coverage:
@@ -255,12 +274,8 @@ class FitResult(Plotted):
         if generated:
             said = f"{len(generated)} of {len(trials)} trials are generated, not measured."
             found.append(Warned("generated", said))
-        if self.J_free_start is not None and self.J_free_start < 0.5 * self.J:
-            said = (
-                f"Of J = {self.J:.4g} on the tune trials {self.J - self.J_free_start:.4g} comes from starting "
-                "each trial at its noisy first sample; initial=estimated removes that."
-            )
-            found.append(Warned("initial", said))
+        if self.bends_to_noise:
+            found.append(Warned("initial", f"{capital(self.bends_to_noise)}."))
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
         found += [Warned("surroundings", f"{capital(note)}.") for note in around]
         visited = coverage_notes(Model(self.profile, self.ties), self.box.names, self.coverage)
@@ -402,6 +417,7 @@ class FitResult(Plotted):
             "trial_results": [c.to_dict() for c in self.compared],
             "stated": [one.to_dict(self.profile.L_pp) for one in self.stated],
             "J_tune_free_start": finite(self.J_free_start),
+            "J_of_noise": finite_values(self.J_of_noise),
             "evaluations": self.evaluations,
             "diverged": self.diverged,
             "restarts": [

@@ -14,9 +14,11 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import all_of, must_be_a
 from ..files import kept_in
+from ..first_states import J_of_noise
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..made_from import identity_of, make_provenance
+from ..objective import Objective
 from ..options import FitOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
@@ -176,6 +178,7 @@ def _looked_at(profile: ShipProfile, posed: _Posed, best: Optimum, provenance: d
         J=J if options.loss == "squares" else float(total(compared, "tune", "after") or J),
         J_before=posed.J_before,
         J_free_start=J_free_start(posed.plain.estimated(setting.deviations()), unit) if from_noise else None,
+        J_of_noise=noise_by_role(everything, unit, trials, setting.objective) if from_noise else {},
         beside=beside(problem, before, unit, posed.weight) if posed.weight else None,
         compared=compared,
         stated=compared_stated(setting, roles, before, unit),
@@ -203,6 +206,18 @@ def _tuned_on(trials: TrialSet) -> list[Trial]:
 def J_free_start(problem: FitProblem, unit: FloatArray) -> float:
     """J of coefficients (n_targets,) if each trial started from the state that fits best within its noise."""
     return float(problem.misfit(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
+
+
+def noise_by_role(problem: FitProblem, unit: FloatArray, trials: TrialSet, objective: Objective) -> dict[str, float]:
+    """J that the noise of first samples alone would bring a faultless model to, by role of the trials.
+
+    problem  over all trials that have a motion, in their order; unit: (n_targets,)
+    """
+    by_trial = J_of_noise(problem.predictor(unit[:, None]), list(trials.trials.values()), objective)
+    found: dict[str, float] = {}
+    for name, J in zip(trials.trials, by_trial, strict=True):
+        found[trials.role(name)] = found.get(trials.role(name), 0.0) + float(J)
+    return found
 
 
 def beside(problem: FitProblem, before: FloatArray, unit: FloatArray, weight: Weight) -> Beside:

@@ -18,12 +18,12 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Backend, Cases, Integrator
 from ..errors import Problem, TrialError
-from ..fitting.initial import noise_of
 from ..fitting.journal import remembered
 from ..model import Model
 from ..objective import PAPER_CHANNELS, Objective, cases_of
 from ..profile import ShipProfile, scale_of
 from ..trial import Trial
+from ..trial.noise import noise_of
 from ..trial.pieces import counting, windows
 from .room import Room
 

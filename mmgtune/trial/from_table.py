@@ -43,7 +43,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         fix = "give a DataFrame, or a dict of arrays"
         raise TrialError(Problem("this is no table", "table", f"{kind_of(table)} has no named columns", fix))
     columns: dict[str, FloatArray] = {}
-    ignored = []
+    ignored, words = [], []
     for given in table.keys():  # noqa: SIM118  the names of a DataFrame, and of a mapping
         name, column = _named(str(given)), _numbers(table[given])
         if name in columns:
@@ -52,7 +52,12 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         if column is None and name not in REQUIRED:
             ignored.append(name)
             continue
-        columns[name] = np.full(np.size(table[given]), np.nan) if column is None else column
+        if column is None:
+            words += _no_numbers(name, table[given], where)
+        else:
+            columns[name] = column
+    if words:
+        raise TrialError(*words)
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
         longest = max(columns, key=lambda name: len(columns[name]))
@@ -81,10 +86,33 @@ def _named(header: str) -> str:
     return name
 
 
+def _no_numbers(name: str, column: Any, where: str) -> list[Problem]:
+    """That a column a trial needs holds something else."""
+    first = next(iter(np.ravel(np.asarray(column, dtype=object)).tolist()), None)
+    why = f"it begins with {brief(first)}, {kind_of(first)}"
+    fix = f"give numbers, by pandas.to_numeric(table['{name}']) perhaps"
+    return [Problem(f"column '{name}' holds no numbers", where, why, fix)]
+
+
 def _numbers(column: Any) -> FloatArray | None:
-    """A column (n_samples,) as numbers, None where it holds others, such as words or dates."""
+    """A column (n_samples,) as numbers, NaN where it is masked, None or what pandas writes as <NA>; None where it holds
+    anything else, such as words or dates."""
     try:
         found = np.asarray(column)
-        return found.astype(float) if found.ndim == 1 and found.dtype.kind in "fiub" else None
-    except (TypeError, ValueError):
+        if found.ndim != 1 or found.dtype.kind not in "fiubO":
+            return None
+        if found.dtype.kind == "O":
+            found = np.array([_number(value) for value in found.tolist()])
+        numbers = found.astype(float)
+        return np.where(np.ma.getmaskarray(column), np.nan, numbers) if np.ma.isMaskedArray(column) else numbers
+    except (TypeError, ValueError, OverflowError):
         return None
+
+
+def _number(value: Any) -> float:
+    """A value among others of any type.  Raises TypeError for text, which is no number even where it reads like one."""
+    if value is None or type(value).__name__ == "NAType":
+        return float("nan")
+    if isinstance(value, str | bytes):
+        raise TypeError
+    return float(value)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +12,7 @@ import pytest
 
 from mmgtune import doctor
 from mmgtune.backends.compiled import cores
+from mmgtune.cli.pipes import Piped
 from tests.command import run
 
 COMPILED = ("simulate", "--trials", "suzaku", "--no-report", "--out", "out")
@@ -67,3 +70,29 @@ def test_no_room_for_what_went_wrong_either(line, tmp_path):
     with open("/dev/full", "w") as full:
         command = [sys.executable, "-m", "mmgtune", *line.split()]
         assert subprocess.run(command, cwd=tmp_path, stdout=full, stderr=full, timeout=60).returncode == 2
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_no_room_for_the_answer(tmp_path):
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "mmgtune", "profile", "list"]
+        ended = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("error: cannot write the output (standard output)\n  why: No space left on device\n")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
+def test_letters_that_an_encoding_lacks(encoding):
+    """A fit of minutes ended as a bug, with nothing said of it, over the sign of a degree."""
+    written = io.BytesIO()
+    text = json.dumps({"日本丸": "35° 🚢 naïve"}, ensure_ascii=False)
+    stream = Piped(io.TextIOWrapper(written, encoding=encoding), "here")
+    stream.write(text)
+    stream.flush()
+    assert json.loads(written.getvalue().decode(encoding)) == json.loads(text)
+
+
+def test_a_terminal_without_the_sign_of_a_degree(tmp_path):
+    ended = run("simulate", "--turn", "35", cwd=tmp_path, env={"PYTHONIOENCODING": "ascii"}, fresh=True)
+    assert (ended.code, ended.err) == (0, "")
+    assert r"turn 35\u00b0 to starboard" in ended.out

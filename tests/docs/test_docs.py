@@ -10,6 +10,7 @@ import pytest
 
 import mmgtune
 from mmgtune.fitting import FitOptions, fit
+from mmgtune.fitting.comparison import mean_off
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 
@@ -132,6 +133,8 @@ def test_numbers_of_the_readme_are_those_of_the_program():
         load_profile("suzaku"), load_trials("suzaku"), FitOptions(method="least-squares", starts=4, initial="estimated")
     )
     assert f"{estimated.J_of('test', 'after'):.2f} instead of {result.J_of('test', 'after'):.1f}" in guide
+    off = [mean_off([c for c in one.compared if c.role == "test"], "after")["track"] for one in (estimated, result)]
+    assert "{:.2f} m off track there instead of {:.1f} m".format(*off) in " ".join(guide.split())
 
 
 @pytest.mark.long

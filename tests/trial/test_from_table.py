@@ -1,6 +1,7 @@
 """Trials from tables in memory, as in a notebook."""
 
 from dataclasses import replace
+from decimal import Decimal
 
 import numpy as np
 import pandas as pd
@@ -51,7 +52,12 @@ def test_a_frame_goes_back_into_a_trial():
         (lambda table: table.drop(columns="r"), "column 'r' is missing"),
         (lambda table: table.rename(columns={"psi": "Psi"}), "rename Psi to psi"),
         (lambda table: table.assign(delta=table.delta * 57.3), "probably in degrees"),
-        (lambda table: table.assign(u="fast"), "'u' has no values at all"),
+        (
+            lambda table: table.assign(u="fast"),
+            "column 'u' holds no numbers (one)\n  why: it begins with 'fast', a str",
+        ),
+        (lambda table: table.assign(x=table.x.astype(str)), "by pandas.to_numeric(table['x'])"),
+        (lambda table: table.assign(t=pd.to_timedelta(table.t, unit="s")), "column 't' holds no numbers"),
         (lambda table: {**table, "u": table.u[:9]}, "samples, 'u' 9"),
         (lambda table: table.rename(columns={"psi": "psi [deg]"}), "give it as 'psi [rad]'"),
         (lambda table: table.assign(**{"u [m/s]": table.u}), "'u' is there twice"),
@@ -63,6 +69,23 @@ def test_what_is_wrong_is_said_as_of_a_file(table, change, said):
     with pytest.raises(TrialError) as found:
         trial_of(change(table), "one")
     assert said in str(found.value)
+
+
+@pytest.mark.parametrize(
+    "gap",
+    [
+        lambda x: x.astype(object).where(x.index != 5, None),
+        lambda x: x.astype("Float64").where(x.index != 5, pd.NA),
+        lambda x: x.where(x.index != 5).map(lambda value: Decimal(repr(value))),
+        lambda x: np.ma.masked_array(x, x.index == 5),
+    ],
+    ids=["None", "<NA>", "Decimal", "masked"],
+)
+def test_gaps_as_tables_have_them(table, gap):
+    """A masked sample was taken for measured, and a column with a None for empty."""
+    trial = trial_of({**table, "x": gap(table.x)}, "one")
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(trial.x)), [5])
+    np.testing.assert_array_equal(np.delete(trial.x, 5), np.delete(table.x.to_numpy(), 5))
 
 
 def test_a_fact_that_no_trial_has(table):

@@ -14,8 +14,8 @@ from functools import lru_cache
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
-from ...fitting.initial import noise_of
 from ...trial import Trial
+from ...trial.noise import noise_of
 from ...trial.smoothing import FEWEST, smoothed, time_scale
 
 BoolArray = BoolArray
