@@ -144,6 +144,16 @@ def test_side_force_and_moment_of_the_four_quadrant_propeller(suzaku, phi):
     assert found.N[0] == pytest.approx(q * 83.0 * C_PN)
 
 
+def test_no_force_of_the_four_quadrant_propeller_jumps(suzaku):
+    """As printed C_PN jumps at 20 deg, and searches for other coefficients ended on the steps that this makes of J."""
+    p = coefficients(suzaku)
+    n, phi = 1.5, np.linspace(15.0, 25.0, 10_001)
+    u_P = 0.7 * np.pi * n * p.propeller.D_P * np.tan(np.radians(phi))
+    wake = WakeOut(0.0 * u_P, u_P, 0.0 * u_P)
+    for force in four_quadrant_propeller(None, wake, np.full_like(u_P, n), p.ship, p.propeller).force:
+        assert np.abs(np.diff(force)).max() < 1e-3 * np.ptp(force)
+
+
 @pytest.mark.parametrize("name", ["suzaku", "kvlcc2_l7", "esso_osaka_3m"])
 def test_angle_of_attack_of_the_rudder(name):
     """alpha_R is the rudder angle less that of the inflow; beta_R the drift at the place that l_R' stands for."""
