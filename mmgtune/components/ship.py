@@ -15,9 +15,9 @@ SHIP = Component(
     cites=(SUYAMA, YASUKAWA),
     fields={
         "rho": Field("density of water", "kg/m^3", default=1025.0, low=0.0, high=2000.0),
-        "L_pp": Field("length between perpendiculars", "m", low=0.0, high=1000.0),
-        "B": Field("breadth", "m", low=0.0, high=200.0),
-        "d": Field("draught", "m", low=0.0, high=50.0),
+        "L_pp": Field("length between perpendiculars", "m", low=0.01, high=1000.0),
+        "B": Field("breadth", "m", low=0.001, high=200.0),
+        "d": Field("draught", "m", low=0.0001, high=50.0),
         "C_b": Field("block coefficient", low=0.0, high=1.0),
         "x_G": Field("centre of gravity, forward of midship", "m"),
         "k_zz_": Field("radius of gyration about the centre of gravity, over L_pp", low=0.0, high=1.0),

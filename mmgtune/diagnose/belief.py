@@ -5,6 +5,7 @@ The rules were set on ships with causes in no registry: a sum of known ones expl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..phrases import listed
@@ -59,7 +60,8 @@ BESIDE = 0.02
 
 OF_MANY = 0.05
 """Share of the fall of chi-squared that must be lost without any one of three causes, where not all of them can be told
-from others, and none of which has values of each run: a third that brings less is the form of the first two."""
+from others, and none of which has values of each run: a third that brings less is the form of the first two, unless
+these are errors of logs."""
 
 FAINT = 0.1
 """Fall of chi-squared per residual that a sum of causes must bring: of less, sums that stand for another cause bring as
@@ -123,7 +125,7 @@ class Belief:
             return "all that they remove is little beside noise, and other sums would"
         if self.rest > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
-        if len(terms) > 2 and self.groups and (bends or min(one.seen for one in terms) < OF_MANY):
+        if len(terms) > 2 and self.groups and (bends or _least_may_be_form(self.causes, brought)):
             return "not all of them can be told from others"
         several = sum(bool(cause.runs) for cause in self.causes) > 1
         if several and (len(terms) > 2 or not self.explains_all):
@@ -241,3 +243,11 @@ class Belief:
         """Whether what is left has a shape and is too much beside what the causes explain."""
         bent = any(cause.runs for cause in self.causes) and self.leftover.excess > BENT and not self.explains_all
         return self.leftover.structured and (self.explained_share < MOSTLY or bent)
+
+
+def _least_may_be_form(causes: Sequence[Cause], brought: Sequence[Contribution]) -> bool:
+    """Whether the least term of a sum may be the form of the others, so little it brings; errors of logs have none."""
+    least, cause = min(
+        ((one.seen, cause) for cause, one in zip(causes, brought, strict=True) if not one.apart), key=lambda one: one[0]
+    )
+    return least < OF_MANY and any(not one.of_logs for one in causes if one is not cause)

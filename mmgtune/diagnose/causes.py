@@ -63,6 +63,11 @@ class Cause:
         )
 
     @property
+    def of_logs(self) -> bool:
+        """Whether it is an error in logs of the motion, which changes nothing that the ship does."""
+        return isinstance(self.effect, SensorEffect)
+
+    @property
     def of_one_log(self) -> bool:
         """Whether it is an error in the log of a single state, as the scale of a gyro is."""
         names = [name.rpartition(".")[2] for name in self.estimates]

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 
 from ..effects import Effect
+from ..effects.signs import UNLIMITED
 from ..units import DIMENSIONLESS, read_as
 from .intervals import Estimate
 
@@ -15,7 +16,7 @@ def quantity(value: float, error: float | None, unit: str) -> str:
     word, factor = _after_number(unit)
     value *= factor
     if not math.isfinite(value):
-        return "infinite"
+        return UNLIMITED
     if error is None or not math.isfinite(error) or error <= 0.0:
         return f"{value:.3g}{word}"
     error *= factor

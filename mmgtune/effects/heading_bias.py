@@ -36,7 +36,7 @@ def _angle(words: str) -> Parameter:
     return angle_about_zero(f"heading shown less true heading, {words}", 3.2, 15.0)
 
 
-_WORDS = {"angle": "{}", "alone": "{}, velocities being logged in true axes"}
+_WORDS = {"angle": "{}", "alone": "{}, velocities being logged in the ship's own axes"}
 
 EFFECT = SensorEffect(
     kind="effects.heading-bias",

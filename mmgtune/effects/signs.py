@@ -2,6 +2,9 @@
 
 from collections.abc import Mapping
 
+UNLIMITED = "infinite"
+"""A size that is infinite, in words."""
+
 
 def signed(size: str, positive: str, negative: str) -> str:
     """A size in words with what its sign means: "-2.1 ± 0.3 m", forward or aft, is "2.1 ± 0.3 m aft"."""

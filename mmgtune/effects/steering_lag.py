@@ -1,5 +1,6 @@
 """The log holds the rudder ordered; the blade follows with a delay or at a limited rate."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from ..physics.elementary import where
 from ..physics.following import INSTANT, followed
 from ..physics.quantities import Lanes
 from .effect import ActuatorEffect, Parameter
-from .signs import each
+from .signs import UNLIMITED, each
 
 
 class SteeringLag(NamedTuple):
@@ -41,6 +42,15 @@ _WORDS = {
     "to_starboard": "at {} at most to starboard",
     "to_port": "at {} at most to port",
 }
+
+
+_WHOLE = {"to_starboard": "at once to starboard", "to_port": "at once to port"}
+"""What is said of a side without a limit."""
+
+
+def _sentence(v: Mapping[str, str]) -> str:
+    free = {name: _WHOLE[name] for name, size in v.items() if size == UNLIMITED and name in _WHOLE}
+    return "The rudder followed the logged angle " + each(_WORDS | free, v)
 
 
 def _rate(words: str) -> Parameter:
@@ -79,5 +89,5 @@ EFFECT = ActuatorEffect(
     },
     variants=(("time_constant",), ("rate_limit",), ("to_starboard", "to_port")),
     besides=("to_starboard", "to_port"),
-    sentence=lambda v: "The rudder followed the logged angle " + each(_WORDS, v),
+    sentence=_sentence,
 )

@@ -7,16 +7,11 @@ import math
 from ..errors import OptionError, Problem
 from ..physics.constants import GRAVITY
 from ..profile import Approach
+from ..profile.possible import FASTEST_SHAFT, FROUDE
 from ..units import KNOT
-
-FROUDE = 1.0
-"""Speed over sqrt(g L_pp) [1] that no ship of displacement comes near: ships stay below 0.5."""
 
 FASTER = 5.0
 """Times the revolutions of the profile's approach beyond which no shaft turns: engines have a tenth to spare."""
-
-FASTEST_SHAFT = 100.0
-"""Revolutions [1/s] that no propeller makes, not even a model's."""
 
 
 def possible_approach(

@@ -8,6 +8,12 @@ from ..components import AT_LEAST_0, AT_MOST_0, Field
 from ..effects import Parameter
 from ..units import DIMENSIONLESS
 
+FROUDE = 1.0
+"""Speed over sqrt(g L_pp) [1] that no ship of displacement comes near: ships stay below 0.5."""
+
+FASTEST_SHAFT = 100.0
+"""Revolutions [1/s] that no propeller makes, not even a model's."""
+
 
 def impossible(name: str, field: Field, number: float) -> dict[str, str] | None:
     """What is wrong with a number in the unit of its field, why, and the fix; None where nothing is.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import shlex
 from dataclasses import replace
@@ -15,6 +16,7 @@ from ..effects import Effect, Parameter, effect_tags, find_effect
 from ..errors import Problem, ProfileError, among, brief, near_to, reason
 from ..inputs import Input
 from ..metrics import METRICS
+from ..physics.constants import GRAVITY
 from ..physics.regressions.fujiwara1998 import wind_harmonics
 from ..resources import (
     DOCUMENTS,
@@ -29,9 +31,10 @@ from ..resources import (
     taken,
 )
 from ..toml_reading import TomlReader, toml_of
+from ..units import KNOT
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
-from .possible import impossible, may_be_infinite
+from .possible import FASTEST_SHAFT, FROUDE, impossible, may_be_infinite
 
 SCHEMA = 1
 PLAIN = ("steering_gear", "actuators", "approach", "tuning", "limits", "provenance")
@@ -39,7 +42,7 @@ SECTIONS = ("schema", "ship", "arrangement", *KINDS, "above_water", "effects", *
 REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
 DEFAULT = "default of the program"
 STEERING_GEAR = {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
-APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")}
+APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s", low=-FASTEST_SHAFT, high=FASTEST_SHAFT)}
 IDENTIFIER = re.compile(r"\w[\w. -]{0,79}")
 """What a ship's id may be."""
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr", "scatter", "warning")
@@ -129,7 +132,12 @@ class _Reader(TomlReader):
         sections = {kind: section for kind, section in found.items() if section is not None}
         complete = len(sections) == len(present) and not self.problems
         if complete and "above_water" in sections:
-            sections["above_water"] = with_wind_coefficients(sections)
+            try:
+                sections["above_water"] = with_wind_coefficients(sections)
+            except ArithmeticError:
+                why, fix = "its numbers are not those of a ship", "check the units of areas, lengths and heights"
+                self.problem("the coefficients of the wind cannot be worked out", "above_water", why=why, fix=fix)
+                complete = False
         gear, approach = self.plain("steering_gear", STEERING_GEAR), self.plain("approach", APPROACH)
         profile = ShipProfile(
             id=self.identifier(ship),
@@ -443,6 +451,14 @@ class _Reader(TomlReader):
                     why=f"it needs {', '.join(missing)}, which this profile does not have",
                     fix="remove the table, or add what is missing",
                 )
+        if profile.approach is not None and profile.approach.speed > (most := FROUDE * math.sqrt(GRAVITY * L_pp)):
+            self.problem(
+                f"'approach.speed' is {profile.approach.speed / KNOT:.4g} kn",
+                "approach",
+                "speed",
+                f"a Froude number of {profile.approach.speed / most:.3g}; ships stay below 0.5",
+                "check its unit, and that of L_pp",
+            )
         propeller = profile.sections["propeller"].coefficients if "propeller" in profile.sections else {}
         if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
             self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min", fix="check both")
@@ -468,11 +484,16 @@ def default_of(field: Field) -> Coefficient | None:
 
 
 def with_wind_coefficients(sections: dict[str, Section]) -> Section:
-    """The section above_water with the harmonics of the wind force that it leaves out, by regression."""
+    """The section above_water with the harmonics of the wind force that it leaves out, by regression.
+
+    Raises ArithmeticError for numbers that give none.
+    """
     section, ship = sections["above_water"], sections["particulars"].numbers
     given = {symbol: section.coefficients[symbol].value for symbol in section.coefficients}
     geometry = SimpleNamespace(**given)
     by_regression = wind_harmonics(ship["particulars.L_pp"], ship["particulars.B"], geometry)._asdict()
+    if not all(math.isfinite(value) for value in by_regression.values()):
+        raise OverflowError
     coefficients = {
         symbol: section.coefficients.get(symbol) or Coefficient(by_regression[symbol], source=REGRESSION)
         for symbol in section.component.fields

@@ -488,12 +488,20 @@ def sum_of(
     before=3.0,
     of_traces=0.0,
     of_one_log=0,
+    of_logs=0,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     leftover = SimpleNamespace(structured=structured, unknown=left or 0.2 * structured)
     return SimpleNamespace(
         causes=[
-            SimpleNamespace(runs=k < by_run, sized=sized, tag="wind", at_ends=at_ends, of_one_log=k < of_one_log)
+            SimpleNamespace(
+                runs=k < by_run,
+                sized=sized,
+                tag="wind",
+                at_ends=at_ends,
+                of_one_log=k < of_one_log,
+                of_logs=k < of_logs,
+            )
             for k in range(len(brought))
         ],
         contributions=list(zip(tags[: len(brought)], brought, strict=True)),
@@ -532,6 +540,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, CLEAR, replace(APART, share=0.002)), "it takes 4 terms"),  # it shows elsewhere too
         (sum_of(CLEAR, CLEAR, APART, groups=GROUP), ""),
         (sum_of(CLEAR, CLEAR, SMALL_BUT_CLEAR, groups=GROUP), "told from others"),
+        (sum_of(CLEAR, CLEAR, SMALL_BUT_CLEAR, groups=GROUP, of_logs=1), "told from others"),
+        (sum_of(CLEAR, CLEAR, SMALL_BUT_CLEAR, groups=GROUP, of_logs=2), ""),  # a clock beside a log and a compass
         (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP), ""),
         (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP, by_run=1), "told from others"),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "do nearly as well"),

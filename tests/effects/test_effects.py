@@ -421,3 +421,24 @@ def test_shallow_water_changes_side_force_and_moment_of_every_hull():
     for hull in (one for one in COMPONENTS if one.kind == "hull"):
         lateral = [symbol for symbol in hull.params._fields if symbol.startswith(("Y_", "N_", "C_D"))]
         assert set(lateral) <= {name.removeprefix("hull.") for name in changed}, hull.tag
+
+
+@pytest.mark.parametrize(
+    ("sizes", "said"),
+    [
+        (
+            {"to_starboard": "infinite", "to_port": "2.2 ± 0.1°/s"},
+            "at once to starboard and at 2.2 ± 0.1°/s at most to port",
+        ),
+        ({"to_starboard": "2.2°/s", "to_port": "infinite"}, "at 2.2°/s at most to starboard and at once to port"),
+        (
+            {"to_starboard": "2.2°/s", "to_port": "1.1°/s"},
+            "at 2.2°/s at most to starboard and at 1.1°/s at most to port",
+        ),
+    ],
+)
+def test_a_rudder_with_no_limit_to_one_side_in_words(sizes, said):
+    """It followed "at infinite at most to starboard"."""
+    gear = find_effect("steering-lag")
+    assert gear is not None
+    assert gear.sentence(sizes) == f"The rudder followed the logged angle {said}"

@@ -64,6 +64,25 @@ def test_what_is_impossible_is_told_with_what_is_not(name, written, words):
     assert f"{words}\n" in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "written", "words"),
+    [
+        ("L_pp", '"1e-308 m"', "length between perpendiculars must be above 0.01 m"),
+        ("B", '"1e-308 m"', "breadth must be above 0.001 m"),
+        ("A_T", '"1e-308 m^2"', "the coefficients of the wind cannot be worked out"),
+        ("speed", '"1e150 kn"', "ships stay below 0.5"),
+        ("speed", '"60 kn"', "a Froude number of 1.08; ships stay below 0.5"),
+        ("n", '"1e9 rpm"', "must be above -100 1/s and below 100 1/s"),
+    ],
+)
+def test_numbers_of_no_ship(name, written, words):
+    """Formulas divided by a length of next to nothing, and runs took all the memory there is."""
+    line = next(line for line in TEXT.splitlines() if line.startswith(f"{name} ="))
+    with pytest.raises(ProfileError) as error:
+        parse_profile(changed(line, f"{name} = {written}"))
+    assert words in str(error.value)
+
+
 def test_a_mark_at_the_beginning(tmp_path):
     (tmp_path / "ship.toml").write_text(TEXT, encoding="utf-8-sig")
     found = load_profile(tmp_path / "ship.toml")

@@ -211,7 +211,7 @@ def test_a_profile_in_the_place_of_another_file_is_told_as_one(tmp_path, read, w
     ("values", "words"),
     [
         ({"hull.R_0": np.nan}, "'hull.R_0' is nan"),
-        ({"particulars.L_pp": -1.0}, "'particulars.L_pp' = -1 is impossible .*\n.*must be above 0 m"),
+        ({"particulars.L_pp": -1.0}, "'particulars.L_pp' = -1 is impossible .*\n.*must be above 0.01 m"),
         ({"hull.R_0": "0.02"}, "'hull.R_0' is '0.02'"),
         ({"hull.R_0": True}, "'hull.R_0' is True"),
         ({"hull.R_0": None}, "'hull.R_0' is None"),
