@@ -2,7 +2,7 @@
 
 Gaps have one rule: each sample of each channel after the first counts where it was measured, whatever the other
 channels did.  J, the squares behind L_MSE, and the root mean squares all follow it.  The seven distance measures mix
-the channels of a sample and need complete ones; indices need a record without gaps.
+the channels of a sample and need complete ones; indices need a record that ``motions.track_of`` can bridge the gaps of.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import FloatArray, numbers_of
+from .arrays import FloatArray, numbers_of, runs_of_true
 from .backends import STATES, Integrator, LaneModel
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, TrialError, among, kind_of, must_be_a
@@ -31,6 +31,7 @@ from .predictor import (
 )
 from .profile import ShipProfile
 from .trial import Trial
+from .trial.gaps import bridged
 from .trial.schema import ATTRIBUTES, FILE_CHANNELS, MAIN_INPUTS
 from .units import DEG
 
@@ -182,10 +183,25 @@ def sized(given: object, name: str, shape: tuple[int | None, ...], why: str) -> 
     return found
 
 
+SHORT_GAP = 3
+"""Samples in a row that may be missing where indices of manoeuvres are read: a cell here and there."""
+
+
 def track_of(trial: Trial) -> Track:
-    """A measured trial as indices of manoeuvres are computed from it.  Raises TrialError where it has gaps."""
-    columns = dict(zip(STATES, trial.motion.T, strict=True))
-    return Track(t=trial.t, n=trial.n, delta=trial.delta, **columns)
+    """A measured trial as indices of manoeuvres are computed from it.
+
+    Gaps of no more than ``SHORT_GAP`` samples are bridged linearly, and left off at either end.  Raises TrialError for
+    longer ones.
+    """
+    motion, kept = trial.motion, slice(None)
+    gaps = [stop - start for channel in motion.T for start, stop in runs_of_true(~np.isfinite(channel))]
+    whole = np.flatnonzero(np.isfinite(motion).all(axis=1))
+    if gaps and max(gaps) <= SHORT_GAP and len(whole):
+        kept = slice(whole[0], whole[-1] + 1)
+        bridges = (bridged(trial.t[kept], channel[kept]) for channel in motion.T)
+        motion = np.column_stack([channel for channel in bridges if channel is not None])
+    columns = dict(zip(STATES, motion.T, strict=True))
+    return Track(t=trial.t[kept], n=trial.n[kept], delta=trial.delta[kept], **columns)
 
 
 def track_if_whole(trial: Trial) -> Track | None:

@@ -12,13 +12,13 @@ from mmgtune.fitting import fit, leave_out
 from mmgtune.fitting.setting import make_setting
 from mmgtune.measures import distance_measures, reference_of
 from mmgtune.metrics import METRICS
-from mmgtune.motions import as_trial, simulate_trials
+from mmgtune.motions import as_trial, simulate_trials, trial_indices
 from mmgtune.objective import make_objective, spread
 from mmgtune.options import FitOptions, LeaveOutOptions, ValidateOptions
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import ShipProfile
 from mmgtune.scores import score
-from mmgtune.trial import TrialSet, write_trial
+from mmgtune.trial import TrialSet, load_trials, write_trial
 from mmgtune.validating import validate
 from tests.command import run
 from tests.fitting.conftest import make_set
@@ -225,3 +225,21 @@ def test_a_problem_does_not_change(suzaku):
     found = moved.states(unit)
     assert np.array_equal(found.states[:, 0, 0], moved.cases.initial + problem.sigma)
     assert np.array_equal(moved.states(unit, np.zeros((4, 1, 6))).states, problem.states(unit).states)
+
+
+@pytest.mark.parametrize("n_missing", [1, 3, 4])
+@pytest.mark.parametrize("first", [100, 478])
+def test_indices_of_a_record_with_a_few_cells_missing(n_missing, first, tmp_path):
+    """One cell without a heading took all indices of the run away, without a word."""
+    whole = load_trials("suzaku")["turn_p35"]
+    psi, usual = np.array(whole.psi), trial_indices(whole, 83.0)
+    psi[first : first + n_missing] = np.nan
+    n_missing = int(np.isnan(psi).sum())
+    gapped = replace(whole, psi=psi)
+    found = trial_indices(gapped, 83.0)
+    assert bool(found) == (n_missing <= 3)
+    for name in ("advance_m", "tactical_diameter_m") if found else ():
+        assert found[name] == pytest.approx(usual[name], rel=1e-3)
+    write_trial(gapped, tmp_path / "turn_p35.parquet")
+    said = run("trials", "inspect", "turn_p35.parquet", cwd=tmp_path).out
+    assert ("no manoeuvring indices: they are read over gaps of up to 3 samples" in said) != bool(found)

@@ -49,7 +49,7 @@ def test_other_coefficients_turn_otherwise(suzaku, sailed):
 def test_only_standard_manoeuvres_without_gaps(suzaku, sailed):
     turn, zigzag = sailed
     x = np.array(turn.x)
-    x[40] = np.nan
+    x[40:44] = np.nan
     straight = replace(zigzag, delta=np.zeros(zigzag.n_samples))
     wrapped = replace(turn, psi=(turn.psi + np.pi) % (2.0 * np.pi) - np.pi)
     brief = replace(turn, **{name: getattr(turn, name)[:2] for name in ATTRIBUTES.values()})

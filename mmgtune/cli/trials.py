@@ -88,7 +88,7 @@ def inspect(
 
       mmgtune trials inspect suzaku
     """
-    from ..motions import trial_indices
+    from ..motions import SHORT_GAP, track_if_whole, trial_indices
     from ..profile import load_profile
     from ..resources import profile_names
     from ..trial import load_trials
@@ -128,6 +128,8 @@ def inspect(
         for index, value in row["indices"].items():
             if isinstance(value, float | str):
                 c.show(f"  {index:<34}{value if isinstance(value, str) else f'{value:.4g}'}")
+        if not row["indices"] and track_if_whole(data.trials[row["id"]]) is None:
+            c.show(f"  no manoeuvring indices: they are read over gaps of up to {SHORT_GAP} samples, in no longer ones")
         if row["note"]:
             c.show(f"  {row['note']}")
 

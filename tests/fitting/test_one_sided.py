@@ -141,7 +141,7 @@ def test_a_fit_without_test_trials_does_not_miss_them(one_sided):
 
 
 def test_next_steps_are_commands_for_what_was_given(one_sided):
-    result, _ = one_sided
+    result = replace(one_sided[0], J_of_noise={}, J_free_start=None)
     (tune,) = result.compared
     assert next_steps(result, "suzaku", "my trials") == []  # one run cannot be left out
     other = replace(tune, trial=replace(tune.trial, id="other"))
@@ -150,3 +150,5 @@ def test_next_steps_are_commands_for_what_was_given(one_sided):
     worse = replace(tune, role="test", records={"before": tune.records["after"], "after": tune.records["before"]})
     (line,) = next_steps(replace(result, compared=(tune, worse)), "suzaku", "my_trials")
     assert shlex.split(line.partition(": ")[2]) == ["mmgtune", "diagnose", "-p", "suzaku", "-t", "my_trials"]
+    (line,) = next_steps(replace(result, J_of_noise={"tune": 2.0 * tune.J["after"]}), "suzaku", "my_trials")
+    assert line.endswith("--initial estimated")
