@@ -29,6 +29,9 @@ LISTED = 3
 WEIGHED = ("particulars.",)
 """What has leeway that a user can weigh or work out: mass and inertia, with what moves along of the water."""
 
+STEERED_BY = ("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r")
+"""What has leeway that trials tell best of a hull: its linear derivatives in sway and yaw."""
+
 IMPLAUSIBLE = 0.25
 """Share of thrust, or of the flow to the propeller, by which one of their coefficients may have moved it: beyond that
 the balance with resistance is where no ship's is, and none of its numbers is told as hers."""
@@ -45,12 +48,12 @@ SURE = 3.0
 
 
 BEYOND_LEEWAY = 2.0
-"""Standard deviations of what is believed of mass and inertia from which the trials contradict it."""
+"""Standard deviations of what is believed of mass, inertia and hull from which the trials contradict it."""
 
 
 @dataclass(frozen=True)
 class Retuned:
-    """A target as it was re-tuned; or mass or inertia, no target, as it came out within its leeway.
+    """A target as it was re-tuned; or mass, inertia or a hull derivative, no target, as it came out within its leeway.
 
     label     what it is, in words
     before    pre-determined value, in the profile's unit; after: re-tuned, with its standard error, None at a bound
@@ -119,8 +122,9 @@ class Retuned:
 
 def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     """Targets of the ship herself at a point, those most surely far from their pre-determined values first, and values
-    of mass and inertia that the trials contradict."""
-    loose = [name for name in point.names if name in bench.believed.leeway and name.startswith(WEIGHED)]
+    of mass, inertia and the hull that the trials contradict."""
+    known = [name for name in point.names if name in bench.believed.leeway]
+    loose = [name for name in known if name.startswith(WEIGHED) or name in STEERED_BY]
     names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")] + loose
     if not names:
         return []
@@ -142,13 +146,19 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
 
 
 def weighed(moved: Sequence[Retuned]) -> str:
-    """What the trials contradict of mass and inertia, in a sentence; "" for nothing."""
+    """What the trials contradict of mass, inertia and the hull, in sentences; "" for nothing."""
     far = [one for one in moved if one.believed is not None and one.far]
     if not far:
         return ""
     they = "It is no target" if len(far) == 1 else "They are no targets"
-    why = "the ship may be loaded otherwise than the profile says, or it was worked out otherwise"
-    return f"The trials ask for {listed([one.words for one in far])}. {they}: {why}."
+    of_hull = [one.name in STEERED_BY for one in far]
+    why = (
+        []
+        if all(of_hull)
+        else ["the ship may be loaded otherwise than the profile says, or it was worked out otherwise"]
+    )
+    why += ["her hull may steer otherwise than that of the profile"] if any(of_hull) else []
+    return f"The trials ask for {listed([one.words for one in far])}. {they}: {'; '.join(why)}."
 
 
 def in_words(moved: Sequence[Retuned]) -> str:
@@ -161,7 +171,8 @@ def in_words(moved: Sequence[Retuned]) -> str:
 
 def unlike_any(moved: Sequence[Retuned]) -> str:
     """Mass and inertia where no ship's are, the surest: in a sentence; "" for none."""
-    far = [one for one in moved if one.believed is not None and one.far and abs(one.change or 0.0) > IMPLAUSIBLE]
+    heavy = [one for one in moved if one.believed is not None and one.name.startswith(WEIGHED)]
+    far = [one for one in heavy if one.far and abs(one.change or 0.0) > IMPLAUSIBLE]
     return far[0].words if far else ""
 
 

@@ -245,6 +245,11 @@ def _gained(answer: Answer, them: str, where: str) -> str:
             f"How much {'that' if them == 'it' else 'these'} would remove of the error {where} does not show: that "
             "error is mostly of coefficients which the other trials leave open."
         )
+    if answer.gain.too_few and share < TOLD:
+        return (
+            f"Adding {them} removes {_explained(answer)} of the error where all runs are fitted together, and "
+            f"{in_percent(share)} of it {where}: the others are too few for all that is re-tuned."
+        )
     imitated = share < IMITATED and answer.options.leeway > 0.0 and answer.choice is None
     hull = f", counted from a model whose hull may be {100.0 * answer.options.leeway:.3g} % off" if imitated else ""
     few = ", and runs are too few to be sure of that" if answer.gain.surely_removed < TOLD <= share else ""

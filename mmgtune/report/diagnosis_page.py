@@ -278,7 +278,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
 
 _STANDS_IN = (
     "targets stand in for one another and for what is no target, and the ship may be otherwise: sentences name only "
-    "what fouling changes (R_0, X_0F), and mass and inertia that the trials contradict"
+    "what fouling changes (R_0, X_0F), and mass, inertia and hull derivatives that the trials contradict"
 )
 
 

@@ -85,10 +85,11 @@ def _gaps(trial: Trial, where: str) -> list[Finding]:
     many = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
     *names, last = (f"'{name}'" for name in missing)
     told = f"{', '.join(names)} and {last} have gaps" if names else f"{last} has gaps"
+    length = counted(ends - begins, "sample")
     return [
         Finding(
             "warning",
-            f"{told}: {many} of {trial.n_samples} samples; the longest has {ends - begins} samples, {lasts:.3g} s",
+            f"{told}: {many} of {trial.n_samples} samples; the longest has {length}, {lasts:.3g} s",
             f"{where}, column '{worst}', row {begins}",
             "samples in gaps count in no comparison",
             code="gaps",

@@ -248,6 +248,8 @@ def unreadable(begins: bytes, where: str, error: Exception) -> TrialError:
     """The error for a file that does not read as Parquet; ``begins`` are its first bytes."""
     if not begins:
         what, fix = "the file is empty", "copy it again from where it was made"
+    elif begins.startswith(b"PARE"):
+        what, fix = "the Parquet file is encrypted", "decrypt it first, or have it written again without a key"
     elif begins.startswith(b"PAR1"):
         what, fix = "the Parquet file is damaged", "copy it again from where it was made: it may be cut off"
     else:

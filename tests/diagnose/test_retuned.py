@@ -7,7 +7,7 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.diagnose.retuned import Retuned, besides, far_off, in_words, weighed
+from mmgtune.diagnose.retuned import Retuned, besides, far_off, in_words, unlike_any, weighed
 from mmgtune.profile import load_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
@@ -141,13 +141,27 @@ def test_inertia_that_is_not_the_profile_s_is_told_though_it_is_no_target(after,
     assert far_off([inertia]) == besides([inertia]) == in_words([inertia]) == ""
 
 
+def test_a_hull_that_is_not_the_profile_s_is_told_though_it_is_no_target():
+    """A yaw damping 25 % larger than that of the profile was in no sentence: "nothing is wrong"."""
+    damping = Retuned("hull.N_r", "yaw damping", "prime", -0.057, -0.070, 0.0005, believed=0.05)
+    said = weighed([damping])
+    assert said.startswith(
+        "The trials ask for yaw damping (N_r) 23 ± 2 % above its pre-determined value. It is no target:"
+    )
+    assert said.endswith("her hull may steer otherwise than that of the profile.")
+    assert unlike_any([damping]) == far_off([damping]) == in_words([damping]) == ""
+    inertia = Retuned("particulars.k_zz_", "radius of gyration", "-", 0.25, 0.4, 0.004, believed=0.05)
+    assert "They are no targets: the ship may be loaded otherwise" in weighed([inertia, damping])
+    assert unlike_any([damping, inertia]).startswith("radius of gyration")
+
+
 @pytest.mark.long
 def test_the_inertia_of_another_loading_is_told(tmp_path):
     ship = load_profile("suzaku")
     write(simulate({"particulars.k_zz_": 1.25 * ship.value("particulars.k_zz_")}, {}, seed=3), tmp_path)
     options = DiagnoseOptions(effects=("rudder-offset", "gyro-bias"), targets=TARGETS)
     result = diagnose(ship, load_trials(tmp_path), options)
-    (inertia,) = [one for one in result.moved if one.believed is not None]
+    (inertia,) = [one for one in result.moved if one.believed is not None and one.name.startswith("particulars.")]
     assert inertia.name == "particulars.k_zz_"
     assert abs(inertia.change - 0.25) < 0.1  # what is believed of her hull keeps it nearer to the profile's
     assert "The trials ask for radius of gyration" in result.sentence()

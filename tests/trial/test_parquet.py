@@ -120,6 +120,7 @@ def test_arrays_are_read_only_and_of_one_length() -> None:
         (lambda whole: whole[: len(whole) // 2], "the Parquet file is damaged"),
         (lambda whole: whole[:-100] + bytes(100), "the Parquet file is damaged"),
         (lambda whole: b"t,x,y\n0,0,0\n", "the file is not Parquet"),
+        (lambda whole: b"PARE" + whole[4:-4] + b"PARE", "the Parquet file is encrypted"),
         (lambda whole: b"", "the file is empty"),
     ],
 )
