@@ -24,7 +24,7 @@ def J_of_noise(predictor: Predictor, trials: Sequence[Trial], objective: Objecti
     To first order: each state of the first sample in turn is off by the deviation of its noise, and what that changes
     in the course of the trial is squared and added up.  Of several members the first; NaN where a run diverges.
     """
-    first = [np.array(states) for states in _states(predictor, trials, None)]
+    first = _states(predictor, trials, None)
     noise = np.array([noise_of(trial) for trial in trials]).reshape(-1, len(STATES))
     weights = weights_of(trials, objective)
     found = np.zeros(len(trials))

@@ -152,12 +152,11 @@ def weighed(moved: Sequence[Retuned]) -> str:
         return ""
     they = "It is no target" if len(far) == 1 else "They are no targets"
     of_hull = [one.name in STEERED_BY for one in far]
-    why = (
-        []
-        if all(of_hull)
-        else ["the ship may be loaded otherwise than the profile says, or it was worked out otherwise"]
-    )
-    why += ["her hull may steer otherwise than that of the profile"] if any(of_hull) else []
+    why = []
+    if not all(of_hull):
+        why.append("the ship may be loaded otherwise than the profile says, or it was worked out otherwise")
+    if any(of_hull):
+        why.append("her hull may steer otherwise than that of the profile")
     return f"The trials ask for {listed([one.words for one in far])}. {they}: {'; '.join(why)}."
 
 
