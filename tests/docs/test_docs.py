@@ -135,7 +135,7 @@ def test_numbers_of_the_readme_are_those_of_the_program():
     assert f"{estimated.J_of('test', 'after'):.2f} instead of {result.J_of('test', 'after'):.1f}" in guide
     off = [mean_off([c for c in one.compared if c.role == "test"], "after")["track"] for one in (estimated, result)]
     assert "{:.2f} m off track there instead of {:.1f} m".format(*off) in " ".join(guide.split())
-    assert f"She is {off[0]:.2f} m off track then." in text
+    assert f"The ship is {off[0]:.2f} m off track then." in text
     assert result.bends_to_noise
 
 
