@@ -891,19 +891,29 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
 
 
 @pytest.mark.parametrize(
-    ("removed", "surely", "most", "said"),
+    ("removed", "surely", "most", "too_few", "said"),
     [
-        (0.96, 0.0, False, "removes 96 % of the error on trials not used, and runs are too few"),
-        (0.96, 0.9, False, "Adding it removes 96 % of the error on trials not used."),
-        (0.4, 0.0, False, "a model whose hull may be 5 % off"),
-        (-0.1, -0.5, False, "of the error on trials not used does not show"),
-        (0.4, 0.0, True, "all of the error in 2 of 3 runs left out in turn; the other shows coefficients that"),
-        (0.96, 0.9, True, "Adding it removes 96 % of the error on trials not used."),
+        (0.96, 0.0, False, False, "removes 96 % of the error on trials not used, and runs are too few"),
+        (0.96, 0.9, False, False, "Adding it removes 96 % of the error on trials not used."),
+        (0.96, 0.9, False, True, "Adding it removes 96 % of the error on trials not used."),
+        (0.4, 0.0, False, False, "a model whose hull may be 5 % off"),
+        (
+            0.4,
+            0.0,
+            False,
+            True,
+            "removes 99 % of the error where all runs are fitted together, and 40 % of it on trials not",
+        ),
+        (-0.1, -0.5, False, True, "of the error on trials not used does not show"),
+        (0.4, 0.0, True, True, "all of the error in 2 of 3 runs left out in turn; the other shows coefficients that"),
+        (0.96, 0.9, True, False, "Adding it removes 96 % of the error on trials not used."),
     ],
 )
-def test_how_sure_a_gain_is_stands_beside_it(removed, surely, most, said):
-    gain = SimpleNamespace(share_removed=removed, surely_removed=surely, tells_most_runs=most, runs_told=(2, 3))
-    seen = SimpleNamespace(gain=gain, options=SimpleNamespace(leeway=0.05), choice=None)
+def test_how_sure_a_gain_is_stands_beside_it(removed, surely, most, too_few, said):
+    gain = SimpleNamespace(
+        share_removed=removed, surely_removed=surely, tells_most_runs=most, runs_told=(2, 3), too_few=too_few
+    )
+    seen = SimpleNamespace(gain=gain, options=SimpleNamespace(leeway=0.05), choice=None, explained_share=0.99)
     assert said in saying._gained(seen, "it", "on trials not used")
 
 
