@@ -53,7 +53,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
             ignored.append(name)
             continue
         if column is None:
-            words += _no_numbers(name, table[given], where)
+            words.append(_no_numbers(name, table[given], where))
         else:
             columns[name] = column
     if words:
@@ -86,12 +86,12 @@ def _named(header: str) -> str:
     return name
 
 
-def _no_numbers(name: str, column: Any, where: str) -> list[Problem]:
+def _no_numbers(name: str, column: Any, where: str) -> Problem:
     """That a column a trial needs holds something else."""
     first = next(iter(np.ravel(np.asarray(column, dtype=object)).tolist()), None)
     why = f"it begins with {brief(first)}, {kind_of(first)}"
     fix = f"give numbers, by pandas.to_numeric(table['{name}']) perhaps"
-    return [Problem(f"column '{name}' holds no numbers", where, why, fix)]
+    return Problem(f"column '{name}' holds no numbers", where, why, fix)
 
 
 def _numbers(column: Any) -> FloatArray | None:
