@@ -28,6 +28,8 @@ _LEFT = re.compile(r"\..+\.[a-z0-9_]{8}\.part")
 def path_of(given: object) -> Path:
     """The path that a text or a Path gives.  Raises OptionError for what is neither."""
     if isinstance(given, (str, os.PathLike)):
+        if not os.fspath(given):
+            raise OptionError(Problem("the path is empty", fix="write '.' for the current folder"))
         path = Path(given)
         if any("\ud800" <= letter <= "\udfff" for letter in str(path)):
             why, fix = "no file of results could name it", "give another name"

@@ -74,6 +74,7 @@ GRID_PER_ROW = 200
 GRID_FREE = 20_000
 RUN_STEPS = Limit(1_000_000, "steps", "a run", "cut the trial where its time jumps, or end what is ordered earlier")
 
+MANOEUVRE_STEPS = Limit(10_000_000, "steps", "a manoeuvre", "take longer steps, or end it earlier")
 TRIAL_SAMPLES = Limit(2_000_000, "samples", "a trial", "cut it into several, or give fewer samples a second")
 TRIAL_VALUES = Limit(40_000_000, "values", "a trial", "leave out columns that nothing uses, or cut it into several")
 TRIAL_BYTES = Limit(1 << 30, "bytes", "a trial file", "leave out columns that nothing uses, or cut it into several")

@@ -8,7 +8,7 @@ import pytest
 import mmgtune
 from mmgtune.fitting.information import Information
 from mmgtune.fitting.pooled import SisterClass, pooled
-from mmgtune.profile import with_values
+from mmgtune.profile import with_effects, with_values
 
 SHIP = mmgtune.load_profile("suzaku")
 TRIALS = mmgtune.load_trials("suzaku")
@@ -89,3 +89,26 @@ def test_sisters_whose_trials_say_what_no_trials_say(size):
     assert pooled(SisterClass("k", members)).n_ships == 3
     with pytest.raises(mmgtune.MmgtuneError, match="cannot be put together"):
         pooled(SisterClass("k", {**members, "c": replace(one, b=np.full(1, size))}))
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: mmgtune.TurningOrder(True), "not a number"),
+        (lambda: mmgtune.TurningOrder(0.6, at=True), "in seconds"),
+        (lambda: mmgtune.ZigzagOrder(0.3, heading=True), "not a number"),
+        (lambda: mmgtune.indices_of(mmgtune.track_of(TRIALS["turn_p35"]), 10**400), "above 0"),
+        (lambda: mmgtune.indices_of(mmgtune.track_of(TRIALS["turn_p35"]), True), "is no length"),
+        (lambda: mmgtune.run_manoeuvre(SHIP, TURN, step=1e-9), "take longer steps"),
+        (lambda: with_values("suzaku", {"hull.R_0": 0.02}, "a test"), "ShipProfile"),
+        (lambda: with_effects("suzaku", {}, "a test"), "ShipProfile"),
+        (lambda: with_effects(SHIP, ["current"], "a test"), "dict"),
+        (lambda: mmgtune.simulate(SHIP, TRIALS["turn_p35"]).write(""), "the path is empty"),
+    ],
+)
+def test_a_slip_is_told(call, said, tmp_path, monkeypatch):
+    """A truth value where a number belongs, a name where a profile does, a step that no memory holds."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(mmgtune.MmgtuneError, match=said):
+        call()
+    assert not list(tmp_path.iterdir())

@@ -8,6 +8,7 @@ from numbers import Real
 from typing import Any
 
 from ..errors import OptionError, Problem, brief, kind_of
+from ..limits import as_float
 from ..units import DEG
 from .criteria import Criterion, check_turning, check_zigzag
 from .track import Track
@@ -55,11 +56,11 @@ _NUMBERS = {
 
 def _hold_number(name: str, value: object, above_0: bool = True) -> None:
     of, unit, whole, where, why = _NUMBERS[name]
-    if not isinstance(value, Real):
+    if not isinstance(value, Real) or isinstance(value, bool):
         why, fix = f"it is {whole} in {unit}", f"give a number; a profile has it as {where}"
         raise OptionError(Problem(f"{kind_of(value)} is no {of}", name, why, fix))
-    if above_0 and not 0.0 < float(value) < math.inf:  # at a test speed of 0 no criterion is judged
-        what, fix = f"the {of} is {float(value):g} {unit}", f"give {whole} in {unit}, above 0"
+    if above_0 and not 0.0 < as_float(value) < math.inf:  # at a test speed of 0 no criterion is judged
+        what, fix = f"the {of} is {as_float(value):g} {unit}", f"give {whole} in {unit}, above 0"
         raise OptionError(Problem(what, name, why, fix))
 
 

@@ -14,9 +14,14 @@ RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
 """Rudder angle and check heading [rad] beyond which degrees are meant."""
 
 
+def _is_real(value: object) -> bool:
+    """Whether a value is a number; True and False are none, though Python counts them among them."""
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
 def is_number(value: object, *, least: float = -math.inf, above: float = -math.inf) -> bool:
     """Whether a value is a finite number, not below one limit and above the other."""
-    number = as_float(value) if isinstance(value, Real) else math.nan
+    number = as_float(value) if _is_real(value) else math.nan
     return math.isfinite(number) and number >= least and number > above
 
 
@@ -44,8 +49,8 @@ def started(at: float) -> None:
 
 def in_radians(angle: float, name: str, most: float) -> None:
     """Raises OptionError where an angle [rad] is no number, or so large that it must be in degrees."""
-    if not isinstance(angle, Real) or math.isinf(as_float(angle)):
-        kind = "" if isinstance(angle, Real) else ", not a number"
+    if not _is_real(angle) or math.isinf(as_float(angle)):
+        kind = "" if _is_real(angle) else ", not a number"
         what, fix = f"the {name} is {brief(angle)}{kind}", "write math.radians(35.0) for 35 deg"
         raise OptionError(Problem(what, "", "orders are in radians", fix))
     if not abs(angle) <= most:

@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray, numbers_of
 from ..errors import OptionError, Problem, brief, kind_of, must_be_a, reason
 from ..inputs import Role
-from ..limits import TRIAL_SAMPLES
+from ..limits import MANOEUVRE_STEPS, TRIAL_SAMPLES
 from ..model import Model
 from ..motions import Motion
 from ..profile import ShipProfile
@@ -148,6 +148,7 @@ class Watch:
         longest = sailing.step or min(LONGEST_STEP, FINE * model.L_pp / self.U_0)
         self.steps = max(1, math.ceil(sailing.sample / longest - 1e-9))
         self.h = sailing.sample / self.steps
+        MANOEUVRE_STEPS.hold(sailing.longest / self.h, "step", OptionError)
         self.samples = round(sailing.longest / sailing.sample)
         self.over = self.samples < 1
         self.diverged = False

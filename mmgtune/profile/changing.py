@@ -81,6 +81,7 @@ def with_values(profile: ShipProfile, values: Mapping[str, float], source: str) 
     Raises ProfileError for a name that the profile does not have, and for what its coefficient cannot be, OptionError
     for a source that is no text.
     """
+    must_be_a(profile, ShipProfile, "profile")
     must_be_a(source, str, "source")
     numbers = _numbers(profile, values)
     changed = {name: Coefficient(value, source=source) for name, value in numbers.items()}
@@ -128,8 +129,10 @@ def with_effects(
     or where they are pivots, at what suits the ship.
 
     stderr  standard errors in the same form, where known.  Raises ProfileError for an unknown effect or parameter,
-            and for what is no number.
+            and for what is no number, OptionError for what is no profile or mapping.
     """
+    must_be_a(profile, ShipProfile, "profile")
+    must_be_a(values, Mapping, "values")
     by_tag = {effect.tag: effect for effect in effects()}
     sections = {kind: section for kind, section in profile.sections.items() if not kind.startswith("effects.")}
     given = {kind.partition(".")[2]: section for kind, section in profile.sections.items() if "." in kind}
@@ -176,6 +179,7 @@ def with_all_effects(profile: ShipProfile, tags: Collection[str] = ()) -> ShipPr
 
     tags  of these alone; empty for all
     """
+    must_be_a(profile, ShipProfile, "profile")
     wanted = [e for e in effects() if e.variants and not missing_for(e, profile) and (not tags or e.tag in tags)]
     return with_effects(profile, {effect.tag: {} for effect in wanted}, ABSENT)
 

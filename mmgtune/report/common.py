@@ -175,29 +175,28 @@ def provenance(data: Mapping[str, Any]) -> Section:
         ("tuned on", ", ".join(map(str, trials.get("tune") or [])) or "none"),
         ("tested on", ", ".join(map(str, trials.get("test") or [])) or "none"),
     ]
-    options = [(str(name), _option(value)) for name, value in (data.get("options") or {}).items()]
     cited = tuple(clean(text) for text in data.get("citations") or ())
     sources = (Prose(("To be cited with these results:",)), Prose(cited, listed=True)) if cited else ()
-    return provenance_section(data, items, "trial", options, sources)
+    return provenance_section(data, items, "trial", options_fold(data.get("options")), sources)
 
 
 def provenance_section(
     data: Mapping[str, Any],
     items: Sequence[tuple[str, Any]],
     hashed: str,
-    options: Sequence[tuple[str, str]] = (),
+    options: Sequence[Fold] = (),
     below: Sequence[Block] = (),
 ) -> Section:
     """How a run was made: command and time, ``items`` as far as they are known, and folds of details.
 
-    hashed  what has hashes, in the singular: "trial"
+    hashed   what has hashes, in the singular: "trial"
+    options  see ``options_fold``
     """
     versions = [(str(name), str(text)) for name, text in sorted((data.get("environment") or {}).items())]
     hashes = [(str(name), str(text)) for name, text in (data["trials"].get("sha256") or {}).items()]
     folded = [
         Fold(summary, (pairs(f"{id}-table", summary, titles, rows),))
         for id, summary, titles, rows in (
-            ("options", "Options", ("option", "value"), options),
             ("versions", "Versions", ("program", "version"), versions),
             ("hashes", f"Hashes of the {hashed}s", (hashed, "SHA-256"), hashes),
         )
@@ -205,7 +204,7 @@ def provenance_section(
     ]
     rows = [*_of_run(data), *_known(items)]
     table = pairs("provenance-table", "How this run was made", ("what", "value"), rows)
-    return Section("provenance", "Provenance", (table, *folded, *below))
+    return Section("provenance", "Provenance", (table, *options, *folded, *below))
 
 
 def _of_run(data: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -244,7 +243,18 @@ def made_rows(data: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
+def options_fold(options: Mapping[str, Any] | None, summary: str = "Options") -> tuple[Fold, ...]:
+    """The options that a run was given; none where its record has none."""
+    rows = [(clean(name), _option(value)) for name, value in (options or {}).items()]
+    return (Fold(summary, (pairs("options-table", "Options", ("option", "value"), rows),)),) if rows else ()
+
+
 def _option(value: Any) -> str:
+    """The value of an option as people say it."""
+    if value is None or value == []:
+        return NONE
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     if isinstance(value, list):
-        return ", ".join(map(str, value))
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+        return ", ".join(map(_option, value))
+    return clean(value if isinstance(value, str) else json.dumps(value, ensure_ascii=False))

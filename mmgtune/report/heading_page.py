@@ -11,8 +11,8 @@ from typing import Any
 
 from ..heading_keeping import shares_of
 from . import advice
-from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import picture
+from .blocks import Card, Commands, Page, Prose, Section, Table, cells
+from .common import options_fold, picture
 from .load import Kind
 from .plot import Axis, Bar, Dots, Figure, Look, Mark, Panel
 from .tables import pairs
@@ -185,13 +185,12 @@ def _made(data: Mapping[str, Any]) -> Section:
         ("command", clean(data["command"] or NONE)),
         ("time", f"{shown(data['wall_s'], 3)} s"),
     ]
-    chosen = [(clean(name), clean(value)) for name, value in data["options"].items()]
     return Section(
         "made",
         "How it was made",
         (
             pairs("made-table", "What was run", ("what", "value"), items),
-            Fold("Options", (pairs("options-table", "Options", ("option", "value"), chosen),)),
+            *options_fold(data["options"]),
         ),
     )
 

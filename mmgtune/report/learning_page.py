@@ -11,8 +11,8 @@ from typing import Any
 from ..inputs import INPUTS
 from . import learned_motions
 from .advice import shortest
-from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import banner_of_sources, made_rows, of_training, picture, rms_errors
+from .blocks import Card, Commands, Page, Prose, Section, Table, cells
+from .common import banner_of_sources, made_rows, of_training, options_fold, picture, rms_errors
 from .load import Kind
 from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs
@@ -208,10 +208,8 @@ def made_section(data: Mapping[str, Any], more: Sequence[tuple[str, str]]) -> Se
         *more,
         *made_rows(data),
     ]
-    chosen = [(clean(name), clean(value)) for name, value in made["options"].items()]
-    options = pairs("options-table", "Options", ("option", "value"), chosen)
     about = pairs("made-table", "What it was made from", ("what", "value"), items)
-    return Section("made", "How it was made", (about, Fold("All options", (options,))))
+    return Section("made", "How it was made", (about, *options_fold(made["options"], "All options")))
 
 
 def _more(data: Mapping[str, Any]) -> list[tuple[str, str]]:

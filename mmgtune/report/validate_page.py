@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 from . import advice, codes, measures, motion_block, motions, repeated, tables
 from .band_scores import bands_section
 from .blocks import Block, Card, Commands, Fold, Page, Section, Table, cells
-from .common import doubts, generated_banner, made_table, picture, rms_errors
+from .common import doubts, generated_banner, made_table, options_fold, picture, rms_errors
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Look, Mark, Panel, model_look
-from .tables import pairs
 from .wording import NONE, Channel, clean, count, model_names, number, sentence, share, shown
 
 if TYPE_CHECKING:
@@ -225,9 +224,7 @@ def _made(data: Mapping[str, Any]) -> Section:
     items = [(f"hash of {clean(one['profile'])}", clean(one.get("sha256") or NONE)) for one in data["profiles"]]
     items += [(f"{clean(one['profile'])} simulated by", clean(one.get("method") or NONE)) for one in data["profiles"]]
     items.append(("spread counted in", clean(data["sigma_from"])))
-    options = [(str(name), str(value)) for name, value in (data.get("options") or {}).items()]
-    folded = Fold("Options", (pairs("options-table", "Options", ("option", "value"), options),))
-    return Section("provenance", "Provenance", (made_table(data, items), *((folded,) if options else ())))
+    return Section("provenance", "Provenance", (made_table(data, items), *options_fold(data.get("options"))))
 
 
 def _read(folder: Path, data: Mapping[str, Any]) -> ValidationRecord:

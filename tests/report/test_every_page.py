@@ -53,6 +53,18 @@ def test_every_kind_is_here(runs: dict[str, Path]) -> None:
     assert files == {one.file for one in KINDS for folder in runs.values() if (folder / one.file).is_file()}
 
 
+def test_options_are_in_words(runs: dict[str, Path]) -> None:
+    """Not None, True or null, which are words of Python and JSON."""
+    tables = {
+        name: re.findall(r'<table id="options-table".*?</table>', (folder / "report.html").read_text(), re.S)
+        for name, folder in runs.items()
+    }
+    assert len(tables["fit"]) == len(tables["validate"]) == len(tables["learning"]) == 1
+    cells = {cell for found in tables.values() for table in found for cell in re.findall(r">([^<>]+)<", table)}
+    assert {"yes", "no"} & cells
+    assert not {"None", "True", "False", "null", "true", "false", "[]"} & cells
+
+
 @pytest.mark.daily("diagnosis", "trials")
 @pytest.mark.parametrize("name", PAGES_NOW)
 def test_screens(browser: Any, runs: dict[str, Path], name: str) -> None:
