@@ -13,7 +13,7 @@ from ..components import ABOVE_WATER, AT_LEAST_0, SHIP, Field
 from ..errors import Problem, ProfileError
 from ..physics.constants import GRAVITY
 from ..physics.quantities import ABOVE_WATER as GEOMETRY
-from ..profile.possible import limits_in_words
+from ..profile.possible import limits_in_words, out_of_proportion
 from ..profile.reading import APPROACH, IDENTIFIER, STEERING_GEAR
 from ..resources import must_be_name, particulars, particulars_names, taken
 from ..toml_reading import TomlReader, toml_of
@@ -203,32 +203,19 @@ class _Reader(TomlReader):
     def together(self, ship: Particulars) -> None:
         """What is impossible about numbers that are possible one by one."""
         of = ship.values["particulars"]
-        L, B, d = of["L_pp"], of["B"], of["d"]
+        L, d = of["L_pp"], of["d"]
 
         def wrong(section: str, key: str, what: str, why: str) -> None:
             self.problem(what, section, key, why, "check number and unit")
 
-        if B >= L:
-            wrong("particulars", "B", "the breadth is not below the length", f"B is {B:g} m, L_pp {L:g} m")
-        elif d >= B:
-            wrong("particulars", "d", "the draught is not below the breadth", f"d is {d:g} m, B {B:g} m")
-        if abs(of.get("x_G", 0.0)) > 0.25 * L:
-            wrong("particulars", "x_G", "the centre of gravity is more than a quarter of L_pp from midship", "")
+        numbers = {f"{section}.{key}": value for section, some in ship.values.items() for key, value in some.items()}
+        for one in out_of_proportion(numbers):
+            wrong(*one)
         if abs(of.get("trim", 0.0)) > d:
             wrong("particulars", "trim", "the trim is more than the draught", f"d is {d:g} m")
         if of.get("C_M", 1.0) <= of["C_b"]:
             why = "C_b over C_M is the prismatic coefficient, below 1"
             wrong("particulars", "C_M", "the midship section coefficient is not above C_b", why)
-        A_R, H_R, D_P = ship.get("rudder", "A_R"), ship.get("rudder", "H_R"), ship.get("propeller", "D_P")
-        if A_R is not None and 0.1 * L * d < A_R:
-            why = f"rudders have a fiftieth of L_pp d = {L * d:.0f} m^2 or so"
-            wrong("rudder", "A_R", f"a rudder of {A_R:g} m^2 is too large for this ship", why)
-        if H_R is not None and 1.5 * d < H_R:
-            wrong("rudder", "H_R", f"a rudder span of {H_R:g} m is more than 1.5 draughts", f"d is {d:g} m")
-        if A_R is not None and H_R is not None and not 0.2 < H_R * H_R / A_R < 10.0:
-            wrong("rudder", "H_R", f"span^2 over area is {H_R * H_R / A_R:.3g}", "rudders have 1 to 3")
-        if D_P is not None and 1.5 * d < D_P:
-            wrong("propeller", "D_P", f"a propeller of {D_P:g} m is more than 1.5 draughts", f"d is {d:g} m")
         froude = ship["approach", "speed"] / (GRAVITY * L) ** 0.5
         if froude > 0.45:
             why = f"the Froude number would be {froude:.2f}; the formulas are for ships that displace water"

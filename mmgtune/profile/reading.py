@@ -34,7 +34,7 @@ from ..toml_reading import TomlReader, toml_of
 from ..units import KNOT
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
-from .possible import FASTEST_SHAFT, FROUDE, impossible, may_be_infinite
+from .possible import FASTEST_SHAFT, FROUDE, impossible, may_be_infinite, out_of_proportion
 
 SCHEMA = 1
 PLAIN = ("steering_gear", "actuators", "approach", "tuning", "limits", "provenance")
@@ -433,15 +433,9 @@ class _Reader(TomlReader):
     def together(self, profile: ShipProfile) -> None:
         """What is impossible about numbers that are possible one by one."""
         L_pp = profile.L_pp
-        if profile.value("particulars.B") >= L_pp:
-            self.problem("'particulars.B' is not below L_pp", "particulars", "B", fix="check the units of both")
-        if abs(profile.value("particulars.x_G")) > 0.25 * L_pp:
-            self.problem(
-                "'particulars.x_G' is more than a quarter of L_pp from midship",
-                "particulars",
-                "x_G",
-                fix="check the units of both",
-            )
+        numbers = {name: value for section in profile.sections.values() for name, value in section.numbers.items()}
+        for wrong in out_of_proportion(numbers):
+            self.problem(wrong.what, wrong.section, wrong.key, wrong.why, "check number and unit")
         for kind, section in profile.sections.items():
             missing = missing_for(section.component, profile) if isinstance(section.component, Effect) else []
             if missing:

@@ -74,6 +74,23 @@ def test_what_is_impossible_is_told_with_what_is_not(name, written, words):
 @pytest.mark.parametrize(
     ("name", "written", "words"),
     [
+        ("A_R", '"0.0006282 m^2"', "a rudder of 0.0006282 m^2 is too small for this ship"),
+        ("A_R", '"62.82 m^2"', "a rudder of 62.82 m^2 is too large for this ship"),
+        ("H_R", '"3.49 mm"', "span^2 over area is 1.94e-06"),
+        ("D_P", '"28 mm"', "a propeller of 0.028 m is less than a fiftieth of the draught"),
+        ("d", '"13.5 m"', "the draught is not below the breadth"),
+        ("x_G", '"41 m"', "more than a quarter of L_pp from midship"),
+    ],
+)
+def test_one_wrong_unit_is_told_by_its_fellows(name, written, words):
+    said = refusal_of(name, written)
+    assert words in said
+    assert "check number and unit" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "written", "words"),
+    [
         ("L_pp", '"1e-308 m"', "length between perpendiculars must be above 0.01 m"),
         ("B", '"1e-308 m"', "breadth must be above 0.001 m"),
         ("A_T", '"1e-308 m^2"', "the coefficients of the wind cannot be worked out"),

@@ -161,7 +161,7 @@ def test_another_source_of_a_section_and_another_model():
     ship, other = load_profile("suzaku"), load_profile("kvlcc2")
     hull = replace(ship.sections["hull"], source="elsewhere")
     read_back(replace(ship, sections={**ship.sections, "hull": hull}))
-    swapped = {kind: other.sections[kind] for kind in ("hull", "propeller", "rudder", "wake")}
+    swapped = {kind: other.sections[kind] for kind in ("particulars", "hull", "propeller", "rudder", "wake")}
     read_back(replace(ship, sections={**ship.sections, **swapped}, targets=("hull.R_0",)))
 
 
