@@ -92,6 +92,11 @@ class Belief:
         return self.leftover.unknown - self.of_traces
 
     @property
+    def differs_by_run(self) -> bool:
+        """Whether a cause has values of each run, which bend to much where they were found."""
+        return any(cause.runs for cause in self.causes)
+
+    @property
     def unclear(self) -> str:
         """Why causes are not believed, in words; "" where they are.
 
@@ -113,9 +118,8 @@ class Belief:
         not_told = f"how large {listed(unsized)} would be is not told, if anything at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
-        bends = any(cause.runs for cause in self.causes)
         if len(brought) < 2:
-            if bends and self._faint and self.gain.surely_removed < AT_ALL:
+            if self.differs_by_run and self._faint and self.gain.surely_removed < AT_ALL:
                 return NEXT_TO_NOTHING
             return not_told if self.gain.share_removed < TOLD else ""
         terms = [one for one in brought if not one.apart]
@@ -125,14 +129,14 @@ class Belief:
             return "all that they remove is little beside noise, and other sums would"
         if self.rest > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
-        if len(terms) > 2 and self.groups and (bends or _least_may_be_form(self.causes, brought)):
+        if len(terms) > 2 and self.groups and (self.differs_by_run or _least_may_be_form(self.causes, brought)):
             return "not all of them can be told from others"
         several = sum(bool(cause.runs) for cause in self.causes) > 1
         if several and (len(terms) > 2 or not self.explains_all):
             return "more than one of them differs from run to run"
         if self.gain.share_removed < TOLD:
             return "it removes little of the error where nothing was fitted"
-        if self.gain.surely_removed < AT_ALL and bends:
+        if self.gain.surely_removed < AT_ALL and self.differs_by_run:
             return NEXT_TO_NOTHING
         if not_told:
             return not_told
@@ -145,8 +149,8 @@ class Belief:
     @property
     def fails(self) -> bool:
         """Whether the causes are not believed, do not tell what is held out, or leave too much that has a shape."""
-        bends = any(cause.runs for cause in self.causes)  # where it was found that explains much of anything
-        untold = self.gain.remains and (self.rest >= NOTICED or self.gain.worse or bends or self._misses_each)
+        doubted = self.gain.worse or self.differs_by_run or self._misses_each
+        untold = self.gain.remains and (self.rest >= NOTICED or doubted)
         return untold or bool(self.unclear) or self._mostly_left
 
     @property
@@ -163,7 +167,7 @@ class Belief:
         excuse it.
         """
         settled = self.together is not None and self.together.settled
-        bends = any(cause.runs for cause in self.causes) and self.gain.leaves_beside()
+        bends = self.differs_by_run and self.gain.leaves_beside()
         share = self.gain.share_removed
         untold = settled and share < TOLD and not self.gain.tells_most_runs
         return bool(self.causes) and (untold or (bends and share < AT_ALL))
@@ -241,7 +245,7 @@ class Belief:
     @property
     def _mostly_left(self) -> bool:
         """Whether what is left has a shape and is too much beside what the causes explain."""
-        bent = any(cause.runs for cause in self.causes) and self.leftover.excess > BENT and not self.explains_all
+        bent = self.differs_by_run and self.leftover.excess > BENT and not self.explains_all
         return self.leftover.structured and (self.explained_share < MOSTLY or bent)
 
 

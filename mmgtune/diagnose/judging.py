@@ -83,8 +83,8 @@ class Judge:
             fewer = with_only(self.bench, found, causes)
             brought = contributions(self.bench, fewer, self.unseen)
             other = self._compared(self._judged(fewer, brought, doubted), fewer)
-            differs = any(cause.runs for cause in other.causes)  # which bends to much
-            if other.names_causes and (other.explains_all if differs else other.explains_nearly_all):
+            enough = other.explains_all if other.differs_by_run else other.explains_nearly_all
+            if other.names_causes and enough:
                 result, found = other, fewer
                 break
             if doubted is None and other.explained_share >= MOSTLY and not other.unclear:

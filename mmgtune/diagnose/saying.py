@@ -97,7 +97,7 @@ def _of_causes(answer: Answer) -> str:
     gained = f"{named} {_gained(answer, 'it' if len(answer.causes) == 1 else 'them', _where(answer))}"
     if answer.doubted:
         gained = f"{gained} {answer.doubted.sentence}"
-    if not any(cause.runs for cause in answer.causes):
+    if not answer.differs_by_run:
         return gained
     if not answer.gain.first_part:
         return f"{gained} The extended profile leaves out what differs between runs."

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator
-from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose, saying
+from mmgtune.diagnose import DiagnoseOptions, diagnose, saying
 from mmgtune.diagnose import contributions as contributed
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause, Trace
@@ -40,6 +40,7 @@ from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, tuned
 from mmgtune.trial import load_trials, visited_by
 from mmgtune.units import DEG
+from tests.diagnose.beliefs import belief_with
 from tests.diagnose.sensors import logged
 from tests.hidden import plant
 from tests.hidden.cases import Case, single
@@ -490,9 +491,8 @@ def sum_of(
     of_one_log=0,
     of_logs=0,
 ):
-    """What ``Diagnosis.unclear`` sees of a sum of causes."""
-    leftover = SimpleNamespace(structured=structured, unknown=left or 0.2 * structured)
-    return SimpleNamespace(
+    """What ``Belief.unclear`` sees of a sum of causes."""
+    return belief_with(
         causes=[
             SimpleNamespace(
                 runs=k < by_run,
@@ -506,8 +506,8 @@ def sum_of(
         ],
         contributions=list(zip(tags[: len(brought)], brought, strict=True)),
         groups=groups,
-        leftover=leftover,
-        rest=Diagnosis.rest.fget(SimpleNamespace(leftover=leftover, of_traces=of_traces)),
+        leftover=SimpleNamespace(structured=structured, unknown=left or 0.2 * structured),
+        of_traces=of_traces,
         chi2=(before, 1.0),
         explains_all=explains_all,
         gain=SimpleNamespace(mostly_remains=remains, share_removed=removed, surely_removed=low),
@@ -594,11 +594,8 @@ GROUP = (("a", "b"),)
     ],
 )
 def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
-    one._faint = Diagnosis._faint.fget(one)
-    one._told_by_one_log = Diagnosis._told_by_one_log.fget(one)
-    found = Diagnosis.unclear.fget(one)
-    assert (found == "") == (said == "")
-    assert said in found
+    assert (one.unclear == "") == (said == "")
+    assert said in one.unclear
 
 
 @pytest.mark.parametrize(
@@ -612,10 +609,7 @@ def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
 )
 def test_what_is_little_beside_noise_may_be_chance(one, chance):
     """Beside noise alone two causes that were not believed made it an error of less than none that nobody knows."""
-    one._faint = Diagnosis._faint.fget(one)
-    one._told_by_one_log = Diagnosis._told_by_one_log.fget(one)
-    one.unclear = Diagnosis.unclear.fget(one)
-    assert Diagnosis.is_chance.fget(one) == chance
+    assert one.is_chance == chance
 
 
 @pytest.mark.parametrize(
@@ -657,10 +651,7 @@ def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_
     ],
 )
 def test_what_is_beyond_all_takes_three_terms_that_are_not_believed(one, beyond):
-    one._faint = Diagnosis._faint.fget(one)
-    one._told_by_one_log = Diagnosis._told_by_one_log.fget(one)
-    one.unclear = Diagnosis.unclear.fget(one)
-    assert Diagnosis.is_beyond_all.fget(one) == beyond
+    assert one.is_beyond_all == beyond
 
 
 @pytest.mark.parametrize(
@@ -675,10 +666,8 @@ def test_what_is_beyond_all_takes_three_terms_that_are_not_believed(one, beyond)
     ids=["a tug", "little", "gusts of a tenth of 9 m/s", "gusts of a gale", "no wind"],
 )
 def test_a_wind_does_not_excuse_what_no_gusts_leave(tag, chi2, left_open, excused):
-    seen = SimpleNamespace(
-        causes=[SimpleNamespace(effect=find_effect(tag))], chi2=chi2, leftover=SimpleNamespace(left_open=left_open)
-    )
-    assert Diagnosis._excused_by_gusts.fget(seen) == excused
+    cause, leftover = SimpleNamespace(effect=find_effect(tag)), SimpleNamespace(left_open=left_open)
+    assert belief_with(causes=(cause,), chi2=chi2, leftover=leftover)._excused_by_gusts == excused
 
 
 def test_how_often_answers_were_right_is_what_the_study_says():
@@ -717,15 +706,13 @@ def test_a_kind_the_study_never_gave_says_so():
     ids=["of runs", "one for all", "hardly more than noise", "without a shape"],
 )
 def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, structured, believed):
-    seen = SimpleNamespace(
-        causes=[SimpleNamespace(runs=runs or None)],
-        leftover=SimpleNamespace(excess=excess, structured=structured),
-        explained_share=0.99,
-        explains_all=False,
-    )
-    assert Diagnosis._mostly_left.fget(seen) is not believed
-    seen.explains_all = True
-    assert not Diagnosis._mostly_left.fget(seen)
+    told = {
+        "causes": (SimpleNamespace(runs=runs or None),),
+        "leftover": SimpleNamespace(excess=excess, structured=structured),
+        "explained_share": 0.99,
+    }
+    assert belief_with(**told, explains_all=False)._mostly_left is not believed
+    assert not belief_with(**told, explains_all=True)._mostly_left
 
 
 @pytest.mark.parametrize(
@@ -780,7 +767,7 @@ def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
     ],
 )
 def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left, open_, explained, misses):
-    seen = SimpleNamespace(
+    one = belief_with(
         gain=SimpleNamespace(held_out=held_out, left=left, share_removed=share, surely_removed=0.0),
         leftover=SimpleNamespace(left_open=open_),
         rest=0.0,
@@ -788,15 +775,15 @@ def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left
         explained_share=explained,
         contributions=[("steering-lag", CLEAR)],
     )
-    assert Diagnosis._misses_each.fget(seen) is misses
+    assert one._misses_each is misses
 
 
 @pytest.mark.parametrize(
     ("explained", "held_out", "all_of_it"), [(0.999, 0.985, True), (0.997, 0.99, False), (0.999, 0.97, False)]
 )
 def test_what_a_cause_of_slightly_another_form_would_leave_is_all(explained, held_out, all_of_it):
-    seen = SimpleNamespace(explained_share=explained, gain=SimpleNamespace(share_removed=held_out, surely_removed=0.9))
-    assert Diagnosis.explains_all.fget(seen) is all_of_it
+    gain = SimpleNamespace(share_removed=held_out, surely_removed=0.9)
+    assert belief_with(explained_share=explained, gain=gain).explains_all is all_of_it
 
 
 @pytest.mark.parametrize(

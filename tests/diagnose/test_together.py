@@ -7,11 +7,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
+from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.contributions import share_lost
 from mmgtune.effects.signs import signed
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
+from tests.diagnose.beliefs import belief_with
 from tests.hidden.cases import of_runs
 from tests.hidden.plant import simulate, write
 
@@ -59,8 +60,7 @@ def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, ve
 def test_what_all_trials_were_looked_at_for_must_be_told_by_the_others(share, most, by_run, untold):
     gain = SimpleNamespace(share_removed=share, surely_removed=share, tells_most_runs=most, leaves_beside=lambda: True)
     causes = (SimpleNamespace(runs="of each" if by_run else None),)
-    seen = SimpleNamespace(gain=gain, causes=causes, together=SimpleNamespace(settled=True))
-    assert Diagnosis._told_by_none.fget(seen) is untold
+    assert belief_with(gain=gain, causes=causes, together=SimpleNamespace(settled=True))._told_by_none is untold
 
 
 @dataclass(frozen=True)
