@@ -64,6 +64,9 @@ _SHOWN = {"rad": "deg", "rad/s": "deg/s", "1/s": "rpm", "1/s^2": "rpm/s"}
 _IN_SENTENCES = {"rad/s^2": "deg/s^2", "N": "kN", "N m": "kN m", "m/s^2": "m/s in ten minutes", "s/m": "per m/s"}
 """More of these, for sizes of causes."""
 
+SMALL_FORCE = 100.0
+"""Force or moment [N, N m] below which nobody speaks of kN."""
+
 _SIGNS = {"deg": "°", "deg/s": "°/s", "deg/s^2": "°/s²"}
 
 
@@ -73,10 +76,13 @@ def shown_in(unit: str) -> tuple[str, float]:
     return shown, 1.0 if shown == unit else 1.0 / _FACTORS[unit][shown]
 
 
-def read_as(unit: str) -> tuple[str, float]:
-    """The unit in which people read the size of a cause, with signs for words (°), and the factor to it from SI."""
+def read_as(unit: str, size: float = math.inf) -> tuple[str, float]:
+    """The unit in which people read the size of a cause, with signs for words (°), and the factor to it from SI.
+
+    size  in SI, of what is to be read: forces on a model ship are told in N
+    """
     word, factor = shown_in(unit)
-    if unit in _IN_SENTENCES:
+    if unit in _IN_SENTENCES and not (unit in ("N", "N m") and abs(size) < SMALL_FORCE):
         word = _IN_SENTENCES[unit]
         factor = 1.0 / _FACTORS[unit][word]
     return _SIGNS.get(word, word), factor

@@ -11,9 +11,14 @@ from ..units import DIMENSIONLESS, read_as
 from .intervals import Estimate
 
 
+MOST_DIGITS = 4
+"""Digits of a size in words, however well trials fit it: no sensor is known to more; a factor may have more, as what
+counts is how far it is from 1."""
+
+
 def quantity(value: float, error: float | None, unit: str) -> str:
     """A value with its 95 % half width: "0.47 ± 0.03 m/s"."""
-    word, factor = _after_number(unit)
+    word, factor = _after_number(unit, value)
     value *= factor
     if not math.isfinite(value):
         return UNLIMITED
@@ -21,12 +26,16 @@ def quantity(value: float, error: float | None, unit: str) -> str:
         return f"{value:.3g}{word}"
     error *= factor
     digits = _digits(error)
+    believed = digits if unit in DIMENSIONLESS or value == 0.0 else MOST_DIGITS - 1 - math.floor(math.log10(abs(value)))
+    if believed < digits:
+        digits = max(believed, 0)
+        error = max(error, 10.0**-digits)
     return f"{value:.{digits}f} ± {error:.{digits}f}{word}"
 
 
 def error_in_words(error: float, unit: str) -> str:
     """A half width alone: "0.03 m/s"."""
-    word, factor = _after_number(unit)
+    word, factor = _after_number(unit, error)
     return f"{error * factor:.{_digits(error * factor)}f}{word}"
 
 
@@ -41,7 +50,7 @@ CLOSE, LITTLE = 0.1, 0.03
 
 def range_in_words(low: float, high: float, unit: str) -> str:
     """From the least to the largest: "0.2 to 0.4 m/s", with as many digits as tell them apart."""
-    word, factor = _after_number(unit)
+    word, factor = _after_number(unit, max(abs(low), abs(high)))
     apart = abs(high - low) * factor
     ends = []
     for end in (low * factor, high * factor):
@@ -53,9 +62,9 @@ def range_in_words(low: float, high: float, unit: str) -> str:
     return f"{' to '.join(dict.fromkeys(ends))}{word}"
 
 
-def _after_number(unit: str) -> tuple[str, float]:
-    """The unit as it stands behind a number, and the factor to it."""
-    word, factor = read_as(unit)
+def _after_number(unit: str, size: float) -> tuple[str, float]:
+    """The unit as it stands behind a number of that size in SI, and the factor to it."""
+    word, factor = read_as(unit, size)
     return "" if unit in DIMENSIONLESS else word if word.startswith("°") else f" {word}", factor
 
 

@@ -241,7 +241,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
     for cause in listed:
         for name, value in cause["parameters"].items():
             low, high = value["ci95"]
-            unit, factor = read_as(clean(value["unit"]))
+            unit, factor = read_as(clean(value["unit"]), number(value["value"]) or 0.0)
             interval = f"{_end(low, factor)} … {_end(high, factor)}"
             size = shown(factor * value["value"]) if number(value["value"]) is not None else "∞"
             rows.append(cells(clean(cause["effect"]), clean(name), size, interval, _unit(unit), _p(cause["p_value"])))
@@ -615,7 +615,7 @@ def _limits(row: Mapping[str, Any]) -> str:
     found = []
     for name, limit in row["detection_limit"].items():
         if limit is not None:
-            unit, factor = read_as(row["units"].get(name, ""))
+            unit, factor = read_as(row["units"].get(name, ""), limit)
             pure = unit in DIMENSIONLESS
             space = "" if pure or unit.startswith("°") else " "
             found.append(f"{name} {shown(factor * limit, 4 if pure else 2)}{space}{'' if pure else unit}")

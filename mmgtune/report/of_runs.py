@@ -15,7 +15,8 @@ def of_runs(cause: Mapping[str, Any]) -> list[Block]:
     found = cause.get("by_run")
     if not found:
         return []
-    unit, factor = read_as(clean(found["unit"]))
+    largest = max((abs(number(row["size"]) or 0.0) for row in found["values"]), default=0.0)
+    unit, factor = read_as(clean(found["unit"]), largest)
     head = "size" if found["unit"] in DIMENSIONLESS else f"size [{unit}]"
     directed = any(number(row["direction_deg"]) is not None for row in found["values"])
     apart = any(number(row.get("from_mean")) is not None for row in found["values"])

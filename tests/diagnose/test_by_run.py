@@ -14,8 +14,9 @@ from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
 from mmgtune.diagnose.by_run import ByRun
 from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.intervals import _apart as apart_of
-from mmgtune.diagnose.wording import range_in_words
+from mmgtune.diagnose.wording import quantity, range_in_words
 from mmgtune.effects import find_effect
+from mmgtune.effects.signs import UNLIMITED
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
@@ -199,6 +200,14 @@ def test_two_days_of_several_runs_are_told_apart_by_day(tmp_path):
 
 def test_a_range_is_told_in_plain_numbers():
     assert range_in_words(586e3, 661e3, "N") == "590 to 660 kN"
+    assert range_in_words(5.86, 6.61, "N") == "5.9 to 6.6 N"  # on a model ship
+    assert quantity(6.10, 0.34, "N") == "6.10 ± 0.34 N"
+    assert quantity(12e3, 340.0, "N m") == "12.00 ± 0.34 kN m"
+    assert quantity(0.049552, 0.000098, "m/s") == "0.04955 ± 0.00010 m/s"
+    assert quantity(0.050045, 0.000088, "m/s") == "0.05004 ± 0.00009 m/s"
+    assert quantity(1.04031, 0.00065, "-") == "1.04031 ± 0.00065"
+    assert quantity(0.00024, 0.00052, "m/s") == "0.00024 ± 0.00052 m/s"
+    assert quantity(math.inf, None, "N") == UNLIMITED
     assert range_in_words(0.2, 0.4, "m/s") == "0.2 to 0.4 m/s"
     assert range_in_words(0.947, 1.027, "-") == "0.95 to 1.03"
     assert range_in_words(0.87, 1.047, "-") == "0.87 to 1.05"
