@@ -10,7 +10,6 @@ from ..effects.signs import UNLIMITED
 from ..units import DIMENSIONLESS, read_as
 from .intervals import Estimate
 
-
 MOST_DIGITS = 4
 """Digits of a size in words, however well trials fit it: no sensor is known to more; a factor may have more, as what
 counts is how far it is from 1."""
