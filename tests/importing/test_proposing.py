@@ -14,7 +14,7 @@ from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.proposing.sampling import heading, sample_of
 from mmgtune.importing.proposing.words import quantity_named, unit_named
 from mmgtune.trial import load_trials
-from mmgtune.units import KNOT
+from mmgtune.units import DEG, KNOT
 from tests.command import run
 from tools.map_disguises import SETS, bundled_logs, disguised, equal, judged, plain_logs
 
@@ -111,6 +111,32 @@ def test_a_unit_that_a_name_says_and_the_motion_refutes(tmp_path, column, as_log
     (usual,) = import_logs([tmp_path / "plain.csv"], plain.map(), ".", dry_run=True).trials
     np.testing.assert_allclose(trial.t, usual.t, atol=1e-6)
     np.testing.assert_allclose(trial.motion, usual.motion, rtol=1e-4, atol=1e-4)
+
+
+@pytest.mark.parametrize("more", [(), ("COG [deg]",)])
+@pytest.mark.parametrize("heading", ["Heading [deg]", "Gyro [deg]"])
+def test_a_turn_alone_with_an_antenna_far_aft(tmp_path, heading, more):
+    """There the course is 50 deg off the heading for most of the time, and the wind on board follows it as well."""
+    trial = suzaku()
+    x = trial.x - 30.0 * np.cos(trial.psi) + 3.0 * np.sin(trial.psi)
+    y = trial.y - 30.0 * np.sin(trial.psi) - 3.0 * np.cos(trial.psi)
+    north, east = np.gradient(trial.x, trial.t), np.gradient(trial.y, trial.t)
+    blows = 8.0 * np.exp(40j * DEG) + north + 1j * east  # from there, and from where she goes to
+    columns = {
+        "Time [s]": trial.t,
+        "Lat [deg]": -33.9 + x / 110924.0,
+        "Lon [deg]": 151.3 + y / 92500.0,
+        heading: np.mod(trial.psi / DEG, 360.0),
+        "SOG [kn]": np.hypot(trial.u, trial.v_m) / KNOT,
+        "Shaft [rpm]": 60.0 * trial.n,
+        "Rudder [deg]": trial.delta / DEG,
+        "Wind speed rel [kn]": np.abs(blows) / KNOT,
+        "Wind dir rel [deg]": np.mod(np.angle(blows * np.exp(-1j * trial.psi)) / DEG, 360.0),
+    } | {name: np.mod(np.arctan2(east, north) / DEG, 360.0) for name in more}
+    found = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert found.guesses["psi"].column == list(columns).index(heading)
+    assert "counterclockwise" not in str(found.guesses["psi"].keys)
+    assert found.guesses["wind_dir_app"].column == list(columns).index("Wind dir rel [deg]")
 
 
 def test_a_course_that_is_taken_for_the_heading_is_said_to_be(tmp_path):

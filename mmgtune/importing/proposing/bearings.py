@@ -23,6 +23,8 @@ LENGTHS = (1.0, 1.0 / KNOT, 3.6)
 """What a velocity is of the slope of a position in metres: in m/s, kn or km/h."""
 FACTORS = (*LENGTHS, 60.0, 1.0 / DEG, 60.0 / DEG, DEG)
 """What a rate is of a slope, in other units."""
+SLOWLY = 0.1
+"""Share of its largest rate up to which a heading counts as steady."""
 TURNED = 2e-4
 """Circular variance of a course, of 1 degree, below which nothing is told by it."""
 
@@ -83,7 +85,8 @@ def tracks(
         for geographic in _kinds(i, j, sample, slopes, columns):
             a, b = slopes[i], slopes[j]
             narrow = float(np.cos(np.nanmedian(columns[i]) * DEG)) if geographic else 1.0
-            for reading, score, words in _of_pair(i, j, a, b * narrow, geographic, moving, means, windows, said):
+            b = b * narrow
+            for reading, score, words in _of_pair(i, j, a, b, geographic, moving, slopes, means, windows, said):
                 # What is the rate of something else is no position.
                 derived = sum(_derived(k, (i, j), rates) for k in (i, j, reading.psi))
                 score -= 0.4 * derived - 0.2 * (reading.psi in whole)
@@ -153,6 +156,7 @@ def _of_pair(
     b: FloatArray,
     geographic: bool,
     moving: Sequence[int],
+    slopes: dict[int, FloatArray],
     means: dict[int, FloatArray],
     windows: Windows,
     said: Sequence[str],
@@ -182,16 +186,28 @@ def _of_pair(
             heading = np.exp(1j * psi[known])
             if 1.0 - abs(heading.mean()) < 0.2 * TURNED:
                 continue
+            straight = None
             for sense in (1.0, -1.0):
                 off = course[known] * (heading.conj() if sense > 0 else heading)
-                mean = off.mean()
-                told = 1.0 - (1.0 - abs(mean)) / spread
+                told = 1.0 - (1.0 - abs(off.mean())) / spread
                 if told < 0.3:
                     continue
-                for track, cost in _readings(i, j, k, sense, float(np.angle(mean)), geographic, degrees, windows, said):
+                if straight is None:
+                    straight = _straight(slopes[k][used][known])
+                ahead = float(np.angle(np.mean(off * straight)))
+                for track, cost in _readings(i, j, k, sense, ahead, geographic, degrees, windows, said):
                     words = f"the course follows it: {100.0 * told:.0f} % of the course's changes"
                     found.append((track, told - cost, words))
     return found
+
+
+def _straight(rates: FloatArray) -> FloatArray:
+    """(n_windows,) what windows count by how little a heading changes in them, at these rates in any unit.
+
+    In a turn drift and the lever of an antenna take the course off the heading, 50 deg and more, always to one side.
+    """
+    most = float(np.nanmax(np.abs(rates), initial=0.0))
+    return np.ones(len(rates)) if most == 0.0 else 1.0 / (1.0 + (np.nan_to_num(rates / most, nan=1.0) / SLOWLY) ** 2)
 
 
 def _readings(

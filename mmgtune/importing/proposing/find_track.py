@@ -79,6 +79,11 @@ def position_and_heading(find: Finder) -> None:
             f"no heading is found: {find.shown(track.psi)}, the course over ground, is taken for it, which lacks the "
             "drift angle of a ship that turns"
         )
+    elif passed_over := _called_heading(find, track):
+        find.notes.append(
+            f"{listed(passed_over)}, called a heading, is not what the course follows, {find.shown(track.psi)} is: "
+            "exchange them in the map if the name is right"
+        )
     _add_columns(find, track, _confidence(find, motion.scores, track, course), motion.words, led)
     _doubt_mirror_image(find, motion.scores, track)
 
@@ -155,8 +160,15 @@ def _add_columns(find: Finder, track: Track, confidence: str, words: Mapping[Tra
             said.append(f"{listed([find.shown(k) for k in find.parts[column].values()])} with it")
         elif column in find.first.written and not both:
             said.append("its cells are in degrees and minutes")
-        doubtful = quantity == "psi" and find.said[column] == "cog"
+        doubtful = quantity == "psi" and (find.said[column] == "cog" or _called_heading(find, track))
         find.add(Guess(quantity, column, own, tuple(said), LIKELY if doubtful else confidence))
+
+
+def _called_heading(find: Finder, track: Track) -> list[str]:
+    """Columns that are called a heading where another one, which is not, is taken for it."""
+    if find.said[track.psi] == "psi":
+        return []
+    return [find.shown(k) for k in find.numeric if find.said[k] == "psi" and k != track.psi]
 
 
 def _doubt_mirror_image(find: Finder, scores: Mapping[Track, float], track: Track) -> None:
