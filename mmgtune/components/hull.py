@@ -5,8 +5,11 @@ from __future__ import annotations
 from ..physics.hull.cubic import CubicHull, cubic_hull
 from ..physics.hull.derivatives import DerivativesHull, derivatives_hull
 from ..physics.hull.unified import UnifiedHull, unified_hull
-from .component import AT_LEAST_0, Component, Field
+from .component import AT_LEAST_0, AT_MOST_0, Component, Field
 from .sources import INOUE, KIJIMA, MATHIOUDAKIS, MIYAUCHI, SUYAMA, YASUKAWA, YOSHIMURA
+
+NEGATIVE = ("Y_v", "N_v", "N_r")
+"""Linear terms that are negative for any hull that goes ahead, with sway to starboard positive."""
 
 CUBIC_HULL = Component(
     kind="hull",
@@ -18,7 +21,7 @@ CUBIC_HULL = Component(
     fields={
         "R_0": Field("resistance going straight", "prime", low=0.0),
         **{
-            name: Field(f"{force}, {term} term", "prime")
+            name: Field(f"{force}, {term} term", "prime", high=AT_MOST_0 if name in NEGATIVE else None)
             for force, symbol, terms in (
                 ("surge force", "X", ("vv", "vr", "rr", "vvvr", "vvvv")),
                 ("sway force", "Y", ("v", "r", "vvv", "vvr", "vrr", "rrr")),
@@ -40,15 +43,15 @@ DERIVATIVES_HULL = Component(
     fields={
         "R_0": Field("resistance going straight", "prime", low=0.0),
         "X_vr": Field("surge force, vr term", "prime"),
-        "Y_v": Field("sway force, v term", "prime"),
+        "Y_v": Field("sway force, v term", "prime", high=AT_MOST_0),
         "Y_r": Field("sway force, r term", "prime"),
         "Y_vv": Field("sway force, v|v| term", "prime"),
         "Y_vr": Field("sway force, v|r| term", "prime"),
         "Y_rr": Field("sway force, r|r| term", "prime"),
         "Y_vvr": Field("sway force, vvr term", "prime"),
         "Y_vrr": Field("sway force, vrr term", "prime"),
-        "N_v": Field("yaw moment, v term", "prime"),
-        "N_r": Field("yaw moment, r term", "prime"),
+        "N_v": Field("yaw moment, v term", "prime", high=AT_MOST_0),
+        "N_r": Field("yaw moment, r term", "prime", high=AT_MOST_0),
         "N_vv": Field("yaw moment, v|v| term", "prime"),
         "N_rr": Field("yaw moment, r|r| term", "prime"),
         "N_vvr": Field("yaw moment, vvr term", "prime"),
@@ -67,10 +70,10 @@ UNIFIED_HULL = Component(
         "X_0F": Field("surge force going straight ahead", "prime", high=0.0),
         "X_0A": Field("surge force going straight astern", "prime", high=0.0),
         "X_vr": Field("surge force, vr term", "prime"),
-        "Y_v": Field("sway force, v term", "prime"),
+        "Y_v": Field("sway force, v term", "prime", high=AT_MOST_0),
         "Y_r": Field("sway force, r term", "prime"),
-        "N_v": Field("yaw moment, v term", "prime"),
-        "N_r": Field("yaw moment, r term", "prime"),
+        "N_v": Field("yaw moment, v term", "prime", high=AT_MOST_0),
+        "N_r": Field("yaw moment, r term", "prime", high=AT_MOST_0),
         "C_D": Field("cross-flow drag coefficient", low=AT_LEAST_0),
         "C_rY": Field("weight of the yaw rate in the cross flow, for the sway force", low=AT_LEAST_0),
         "C_rN": Field("weight of the yaw rate in the cross flow, for the yaw moment", low=AT_LEAST_0),

@@ -18,7 +18,7 @@ FOUR_QUADRANT_PROPELLER = Component(
     fields={
         "D_P": Field("diameter", "m", low=0.0, high=20.0),
         "t_P": Field("thrust deduction fraction", low=-1.0, high=1.0),
-        "K_T0": Field("thrust coefficient, constant term"),
+        "K_T0": Field("thrust coefficient, constant term", low=0.0),
         "K_T1": Field("thrust coefficient, phi_P term", "1/deg"),
         "K_T2": Field("thrust coefficient, phi_P^2 term", "1/deg^2"),
         "K_T3": Field("thrust coefficient, phi_P^3 term", "1/deg^3"),
@@ -50,7 +50,7 @@ OPEN_WATER_PROPELLER = Component(
     fields={
         "D_P": Field("diameter", "m", low=0.0, high=20.0),
         "t_P": Field("thrust deduction fraction", low=-1.0, high=1.0),
-        "k_0": Field("thrust coefficient at J = 0"),
+        "k_0": Field("thrust coefficient at J = 0", low=0.0),
         "k_1": Field("thrust coefficient, J term"),
         "k_2": Field("thrust coefficient, J^2 term"),
     },
@@ -82,7 +82,7 @@ REVERSIBLE_PROPELLER = Component(
         "D_P": Field("diameter", "m", low=0.0, high=20.0),
         "pitch_": Field("pitch over diameter", low=0.0, high=5.0),
         "t_P": Field("thrust deduction fraction, revolutions ahead", low=-1.0, high=1.0),
-        "k_0": Field("thrust coefficient at J = 0, revolutions ahead"),
+        "k_0": Field("thrust coefficient at J = 0, revolutions ahead", low=0.0),
         "k_1": Field("thrust coefficient, J term, revolutions ahead"),
         "k_2": Field("thrust coefficient, J^2 term, revolutions ahead"),
         "J_max": Field("largest size of an advance ratio", default=1.5, low=0.0),

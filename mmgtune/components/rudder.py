@@ -12,7 +12,7 @@ from .sources import KIJIMA, MATHIOUDAKIS, MIYAUCHI, OKUDA, SUYAMA, YASUKAWA
 _RUDDER_GEOMETRY = {
     "A_R": Field("rudder area", "m^2", low=0.0, high=500.0),
     "H_R": Field("rudder span", "m", low=0.0, high=30.0),
-    "x_R_": Field("longitudinal position of the rudder, over L_pp", low=-1.0, high=1.0),
+    "x_R_": Field("longitudinal position of the rudder, over L_pp", low=-1.0, high=0.0),
     "t_R": Field("steering resistance deduction", low=-2.0, high=1.0),
     "a_H": Field("increase of the rudder force by the hull", low=-1.0, high=3.0),
     "x_H_": Field("position of that increase, over L_pp", low=-3.0, high=3.0),

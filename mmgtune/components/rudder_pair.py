@@ -30,7 +30,7 @@ KANG_PROPELLER = Component(
     fields={
         "D_P": Field("diameter", "m", low=0.0, high=20.0),
         "pitch_": Field("pitch over diameter", low=0.0, high=5.0),
-        "k_0": Field("thrust coefficient at J = 0, ship ahead"),
+        "k_0": Field("thrust coefficient at J = 0, ship ahead", low=0.0),
         "k_1": Field("thrust coefficient, J term, ship ahead"),
         "k_2": Field("thrust coefficient, J^2 term, ship ahead"),
         "k_0n": Field("thrust coefficient, constant term, ship astern"),
@@ -59,7 +59,7 @@ RUDDER_PAIR = Component(
     fields={
         "A_R": Field("area of each rudder", "m^2", low=0.0, high=500.0),
         "H_R": Field("rudder span", "m", low=0.0, high=30.0),
-        "x_R_": Field("longitudinal position of the rudders, over L_pp", low=-1.0, high=1.0),
+        "x_R_": Field("longitudinal position of the rudders, over L_pp", low=-1.0, high=0.0),
         "k_x": Field("share of the propeller race's gain of velocity that reaches a rudder", low=AT_LEAST_0),
         **polynomial("steering resistance deduction t_R", "e", _IN_J),
         **polynomial("increase a_H of the rudder force by the hull", "f", _IN_J),

@@ -14,7 +14,7 @@ SHIP = Component(
     function=None,
     cites=(SUYAMA, YASUKAWA),
     fields={
-        "rho": Field("density of water", "kg/m^3", default=1025.0, low=0.0, high=2000.0),
+        "rho": Field("density of water", "kg/m^3", default=1025.0, low=500.0, high=2000.0),
         "L_pp": Field("length between perpendiculars", "m", low=0.01, high=1000.0),
         "B": Field("breadth", "m", low=0.001, high=200.0),
         "d": Field("draught", "m", low=0.0001, high=50.0),

@@ -338,7 +338,7 @@ def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
 
 def test_a_start_whose_neighbours_diverge_does_not_stop_the_others(suzaku, noisy):
     """A box so wide that parts of it blow up: those starts are given up, the others reach an optimum."""
-    names = ("hull.X_vvvv", "hull.N_r")
+    names = ("hull.X_vvvv", "hull.N_rrr")
     problem = make_problem(suzaku.profile, noisy, FitOptions(targets=names))
     problem = problem.with_targets(problem.model, make_box(problem.model, names, 400.0))
     starts = np.array([[0.5, 0.0, 1.0, 0.75], [0.5, 1.0, 1.0, 0.3]])

@@ -61,6 +61,12 @@ def refusal_of(name, written):
     [
         ("kappa", "-0.1", "must be 0 or more"),
         ("C_w", '"0.1 1/rad^2"', "must be 0 or less"),
+        ("N_v", "0.106", "must be 0 or less"),
+        ("Y_v", "0.2", "must be 0 or less"),
+        ("N_r", "0.05", "must be 0 or less"),
+        ("K_T0", "-0.167", "must be above 0"),
+        ("x_R_", "0.482", "must be above -1 and below 0"),
+        ("rho", '"1.025 kg/m^3"', "must be above 500 kg/m^3 and below 2000 kg/m^3"),
         ("D_P", '"-1 m"', "must be above 0 m and below 20 m"),
         ("max_angle", '"200 deg"', "must be above 0 rad and below 1.6 rad"),
     ],

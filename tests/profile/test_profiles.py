@@ -162,7 +162,7 @@ def test_the_fix_of_what_is_no_number_can_be_copied(name):
 def test_a_limit_without_unit_is_said_without_one():
     text = load_profile("suzaku").text.replace("x_R_ = { value = -0.5", "x_R_ = { value = -7.0")
     (problem,) = problems_of(text)
-    assert problem.why.endswith("must be above -1 and below 1")
+    assert problem.why.endswith("must be above -1 and below 0")
 
 
 def test_a_run_folder_is_taken_for_the_profile_in_it(tmp_path):
