@@ -191,8 +191,9 @@ def track_of(trial: Trial) -> Track:
     """A measured trial as indices of manoeuvres are computed from it.
 
     Gaps of no more than ``SHORT_GAP`` samples are bridged linearly, and left off at either end.  Raises TrialError for
-    longer ones.
+    longer ones, OptionError for what is no trial.
     """
+    must_be_a(trial, Trial, "trial")
     motion, kept = trial.motion, slice(None)
     gaps = [stop - start for channel in motion.T for start, stop in runs_of_true(~np.isfinite(channel))]
     whole = np.flatnonzero(np.isfinite(motion).all(axis=1))

@@ -67,6 +67,9 @@ _IN_SENTENCES = {"rad/s^2": "deg/s^2", "N": "kN", "N m": "kN m", "m/s^2": "m/s i
 SMALL_FORCE = 100.0
 """Force or moment [N, N m] below which nobody speaks of kN."""
 
+SLOW_DRIFT = 0.01 * DEG
+"""Rate [rad/s] below which nobody speaks of °/s."""
+
 _SIGNS = {"deg": "°", "deg/s": "°/s", "deg/s^2": "°/s²"}
 
 
@@ -79,8 +82,10 @@ def shown_in(unit: str) -> tuple[str, float]:
 def read_as(unit: str, size: float = math.inf) -> tuple[str, float]:
     """The unit in which people read the size of a cause, with signs for words (°), and the factor to it from SI.
 
-    size  in SI, of what is to be read: forces on a model ship are told in N
+    size  in SI, of what is to be read: forces on a model ship are told in N, the drift of a gyro in °/min
     """
+    if unit == "rad/s" and abs(size) < SLOW_DRIFT:
+        return "°/min", 60.0 / DEG
     word, factor = shown_in(unit)
     if unit in _IN_SENTENCES and not (unit in ("N", "N m") and abs(size) < SMALL_FORCE):
         word = _IN_SENTENCES[unit]

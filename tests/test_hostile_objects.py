@@ -99,6 +99,7 @@ def test_sisters_whose_trials_say_what_no_trials_say(size):
         (lambda: mmgtune.ZigzagOrder(0.3, heading=True), "not a number"),
         (lambda: mmgtune.indices_of(mmgtune.track_of(TRIALS["turn_p35"]), 10**400), "above 0"),
         (lambda: mmgtune.indices_of(mmgtune.track_of(TRIALS["turn_p35"]), True), "is no length"),
+        (lambda: mmgtune.track_of("turn_p35"), "is no Trial"),
         (lambda: mmgtune.run_manoeuvre(SHIP, TURN, step=1e-9), "take longer steps"),
         (lambda: with_values("suzaku", {"hull.R_0": 0.02}, "a test"), "ShipProfile"),
         (lambda: with_effects("suzaku", {}, "a test"), "ShipProfile"),

@@ -184,8 +184,8 @@ class Belief:
     def _bent(self) -> str:
         """Why values of each run are none of the runs, in words: they bend to what is elsewhere; "" for nothing."""
         for runs in filter(None, (cause.runs for cause in self.causes)):
-            if with_what := runs.goes_with:
-                return f"its values go with {with_what}, and so with something else than the run"
+            if runs.doubt:
+                return runs.doubt
         return f"beside values of each run it takes {self.unlike_any}" if self.unlike_any else ""
 
     @property

@@ -28,6 +28,9 @@ ALIKE = 0.2
 CERTAIN = 3.0
 """Standard errors from which the value of a run is other than none at all."""
 
+SEVERAL, CLEARLY = 4, 2.0
+"""Groups of which one alone may be chance, and times what is certain from which it is not."""
+
 IN_STEP = 2.0
 """Standard error of a value over that of its distance from the mean of all, from which all are known better beside each
 other than alone: what they have in common is then told once."""
@@ -116,14 +119,18 @@ class ByRun:
 
     def shows(self, k: int) -> bool:
         """Whether the values of a group are beyond doubt other than none at all."""
+        return self._far(k) > CERTAIN**2 + len(self._sizes)
+
+    def _far(self, k: int) -> float:
+        """How far the values of a group are from none at all: squares of their standard errors, summed."""
         far = 0.0
         for name in self._sizes:
             one, parameter = self.values[k][name], self.effect.parameters[name]
             if parameter.chart == "reciprocal":  # an end of its interval is infinite where there may be none
-                far += 0.0 if one.high is None else 2.0 * CERTAIN**2
+                far += 0.0 if one.high is None else math.inf
             elif one.stderr:
                 far += ((one.value - parameter.null) / one.stderr) ** 2
-        return far > CERTAIN**2 + len(self._sizes)
+        return far
 
     def from_mean(self, k: int) -> Told | None:
         """Distance of a group's value from the mean of all, where these distances are known better than the values;
@@ -136,6 +143,22 @@ class ByRun:
     @staticmethod
     def _better_apart(one: Estimate) -> bool:
         return one.apart is not None and one.stderr is not None and one.stderr > IN_STEP * one.apart
+
+    @property
+    def doubt(self) -> str:
+        """Why the values are none of the runs, in words; "" where nothing says so."""
+        if with_what := self.goes_with:
+            return f"its values go with {with_what}, and so with something else than the run"
+        return f"only one {IN_WORDS[self.by]} has a value for certain, and hardly" if self._hangs_on_one else ""
+
+    @property
+    def _hangs_on_one(self) -> bool:
+        """Whether of several groups a single one has a value for certain, and hardly, and none stands out beside the
+        others: a value of a run bends to whatever else is in it."""
+        clearly = (CLEARLY * CERTAIN) ** 2 + len(self._sizes)
+        shown = [k for k in range(len(self.groups)) if self.shows(k)]
+        alone = len(self.groups) >= SEVERAL and len(shown) == 1 and self._far(shown[0]) <= clearly
+        return alone and self._differ_in_step is None
 
     @property
     def goes_with(self) -> str:

@@ -54,13 +54,13 @@ class Leading:
     @classmethod
     def of(cls, whole: Belief, first: Belief) -> Leading | None:
         """From the answer with all causes, which has the size of the first, and the answer with the first alone, which
-        has its gain; None where the gain is small, or the size is not determined or goes with something else."""
+        has its gain; None where the gain is small, or the size is not determined or none of the runs."""
         explained, held_out = first.explained_share, first.gain.share_removed
         if not first.causes or min(explained, held_out) < LEADS:
             return None
         cause = next(one for one in whole.causes if one.tag == first.causes[0].tag)
-        elsewhere = cause.runs is not None and bool(cause.runs.goes_with)
-        return cls(cause, explained, held_out) if cause.sized and not (cause.at_ends or elsewhere) else None
+        doubtful = cause.runs is not None and bool(cause.runs.doubt)
+        return cls(cause, explained, held_out) if cause.sized and not (cause.at_ends or doubtful) else None
 
     @property
     def sentence(self) -> str:

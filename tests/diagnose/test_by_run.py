@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from mmgtune.profile import load_profile, parse_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
+from tests.diagnose.beliefs import belief_with
 from tests.hidden.cases import Case, of_one_run, of_runs, tide
 from tests.hidden.plant import NAMES, TUNING, simulate, write
 
@@ -207,6 +209,8 @@ def test_a_range_is_told_in_plain_numbers():
     assert quantity(0.050045, 0.000088, "m/s") == "0.05004 ± 0.00009 m/s"
     assert quantity(1.04031, 0.00065, "-") == "1.04031 ± 0.00065"
     assert quantity(0.00024, 0.00052, "m/s") == "0.00024 ± 0.00052 m/s"
+    assert quantity(0.005 * DEG, 1e-4 * DEG, "rad/s") == "0.3000 ± 0.0060°/min"
+    assert quantity(0.05 * DEG, 0.01 * DEG, "rad/s") == "0.050 ± 0.010°/s"
     assert quantity(math.inf, None, "N") == UNLIMITED
     assert range_in_words(0.2, 0.4, "m/s") == "0.2 to 0.4 m/s"
     assert range_in_words(0.947, 1.027, "-") == "0.95 to 1.03"
@@ -293,6 +297,26 @@ def test_values_of_two_kinds_of_runs_may_be_of_what_was_ordered(values, rudder, 
     found = of_gains(values, rudder, shaft)
     assert (found.may_go_with, found.goes_with) == (said, "")
     assert (f"; it goes with {said}, so that what changes with it" in found.sentence) == bool(said)
+
+
+@pytest.mark.parametrize(
+    ("values", "hangs"),
+    [
+        ((0.02, 0.06, -0.05, -0.01, 0.02, 0.03, 0.03, -0.16), True),  # an engine that hunts, which no log shows
+        ((0.02, 0.06, -0.05, -0.01, 0.02, 0.03, 0.03, -0.50), False),  # an indicator knocked before one run
+        ((0.02, 0.06, -0.05, -0.01, 0.02, 0.03, 0.16, -0.16), False),
+        ((0.02, 0.06, -0.16), False),
+        ((0.02, 0.06, -0.05, -0.01), False),  # in none for certain
+    ],
+)
+def test_values_that_hang_on_one_run_that_hardly_has_one(values, hangs):
+    rows = [{"angle": Estimate("x", value * DEG, None, None, 0.04 * DEG)} for value in values]
+    labels = tuple(f"trial:run{k}" for k in range(len(values)))
+    found = ByRun(
+        find_effect("rudder-offset"), ("angle",), "trial", labels, tuple((one,) for one in labels), tuple(rows)
+    )
+    why = belief_with(causes=(SimpleNamespace(runs=found),))._bent
+    assert why == ("only one run has a value for certain, and hardly" if hangs else "")
 
 
 def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():

@@ -613,21 +613,21 @@ def test_what_is_little_beside_noise_may_be_chance(one, chance):
 
 
 @pytest.mark.parametrize(
-    ("explained", "held_out", "sized", "goes_with", "leads"),
+    ("explained", "held_out", "sized", "doubt", "leads"),
     [
         (0.97, 0.9, True, None, True),
         (0.97, 0.9, True, "", True),
-        (0.97, 0.9, True, "the rudder angle", False),  # what is not of the run is no size of its cause
+        (0.97, 0.9, True, "they go with the rudder angle", False),  # what is not of the run is no size of its cause
         (0.7, 0.9, True, None, False),
         (0.97, 0.5, True, None, False),
         (0.97, 0.9, False, None, False),
     ],
 )
 def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_is_most(
-    explained, held_out, sized, goes_with, leads
+    explained, held_out, sized, doubt, leads
 ):
     """An antenna 110 m aft, beside a form of the hull that nobody knows, was named without its size."""
-    runs = None if goes_with is None else SimpleNamespace(goes_with=goes_with)
+    runs = None if doubt is None else SimpleNamespace(doubt=doubt)
     sentence = "The antenna stood 110 m aft"
     cause = SimpleNamespace(sized=sized, at_ends=False, tag="antenna", sentence=sentence, runs=runs)
     gain = SimpleNamespace(share_removed=held_out, surely_removed=0.0)
