@@ -25,6 +25,9 @@ _SPOKEN = {
 }
 """What to write for commands that other programs have."""
 
+_ALIKE = {"check": "validate", "validate": "check", "show": "inspect", "inspect": "show"}
+"""Commands of a group by what the other group calls the like: files are looked at and checked in both."""
+
 _GIVEN = ("-p", "--profile", "-t", "--trials")
 """Options that some commands take as words."""
 
@@ -113,6 +116,8 @@ def _are_trials(word: str) -> bool:
 def _meant(name: str, ctx: Any) -> dict[str, str]:
     """Why a command is unknown, and what to write: one that another group has, or the nearest."""
     found = among(name, [*ctx.command.commands])
+    if ctx.parent is not None and _ALIKE.get(name) in ctx.command.commands:
+        return {**found, "fix": f"write {path_of(ctx)} {_ALIKE[name]}"}
     elsewhere = [path for path, _ in _commands(ctx.find_root().command) if path.split()[-1] == name]
     if elsewhere:
         return {**found, "fix": f"write mmgtune {' or mmgtune '.join(elsewhere)}"}
