@@ -123,7 +123,7 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         (("import", "a.csv"), ("unknown command 'import' (mmgtune)", "", "fix: write mmgtune trials import")),
         (
             ("profile", "check"),
-            ("unknown command 'check' (mmgtune profile)", "", "fix: write mmgtune profile validate"),
+            ("unknown command 'check'", "", "fix: write mmgtune profile validate"),
         ),
         (("trials", "show"), ("unknown command 'show' (mmgtune trials)", "", "fix: write mmgtune trials inspect")),
         (("version",), ("unknown command 'version'", "", "fix: write mmgtune --version")),
