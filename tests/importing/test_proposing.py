@@ -113,6 +113,16 @@ def test_a_unit_that_a_name_says_and_the_motion_refutes(tmp_path, column, as_log
     np.testing.assert_allclose(trial.motion, usual.motion, rtol=1e-4, atol=1e-4)
 
 
+def test_a_column_called_a_heading_that_the_course_does_not_follow_is_told(tmp_path):
+    columns = logged(turn())
+    columns = {("A1" if name == "heading" else name): values for name, values in columns.items()}
+    columns["Heading [deg]"] = 90.0 + 5.0 * np.sin(columns["time"] / 7.0)
+    found = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert found.guesses["psi"].column == list(columns).index("A1")
+    assert found.guesses["psi"].confidence == "likely"
+    assert any("called a heading, is not what the course follows, 'A1' is" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("more", [(), ("COG [deg]",)])
 @pytest.mark.parametrize("heading", ["Heading [deg]", "Gyro [deg]"])
 def test_a_turn_alone_with_an_antenna_far_aft(tmp_path, heading, more):
