@@ -54,13 +54,16 @@ def check(
         listed = {name: [vars(f) for f in findings] for name, findings in found.items()}
         c.print_json({"schema": 1, "kind": "trials-check", "trials": listed, "problems": []})
     else:
-        for findings in found.values():
-            for f in findings:
-                c.show(
-                    f"{f.severity}: {f.what} ({f.where})"
-                    + (f"\n  why: {f.why}" if f.why else "")
-                    + (f"\n  fix: {f.fix}" if f.fix else "")
-                )
+        alike: dict[tuple[str, ...], list[str]] = {}
+        for f in (f for findings in found.values() for f in findings):
+            alike.setdefault((f.severity, f.what, f.why, f.fix), []).append(f.where)
+        for (severity, what, why, fix), (first, *others) in alike.items():
+            more = f", and {len(others)} more" if others else ""
+            c.show(
+                f"{severity}: {what} ({first}{more})"
+                + (f"\n  why: {why}" if why else "")
+                + (f"\n  fix: {fix}" if fix else "")
+            )
         warnings = sum(f.severity == "warning" for findings in found.values() for f in findings)
         tune, test = len(data.tune) + len(data.tune_stated), len(data.test) + len(data.test_stated)
         c.show(f"{counted(len(found), 'trial')} can be used, {counted(warnings, 'warning')}; tune {tune}, test {test}")

@@ -226,3 +226,9 @@ def test_of_a_warning_one_line_is_said(capsys, text):
     """Numba quotes a traceback in what it says of a variable of the environment."""
     _say_warning(text)
     assert capsys.readouterr().err == "warning: one line\n"
+
+
+def test_what_is_the_same_of_several_trials_is_said_once(tmp_path):
+    said = run("trials", "check", "suzaku", cwd=tmp_path).out
+    assert said.count("note: generated, not measured") == 1
+    assert re.search(r"note: generated, not measured \(\S+\.parquet, and 9 more\)", said)
