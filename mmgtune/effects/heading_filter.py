@@ -64,7 +64,7 @@ EFFECT = FilterEffect(
     },
     variants=(("time_constant",), ("alone",)),
     sentence=lambda v: (
-        "The compass followed the heading with a time constant of "
+        "The compass lagged behind the heading, by a time constant or a delay of "
         + " and ".join(
             words.format(v[name])
             for name, words in {
