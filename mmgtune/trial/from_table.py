@@ -21,9 +21,10 @@ FACTS = ("ship", "manoeuvre", "source", "note", "group", "cut_from", "noise", "d
 def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     """A trial from columns as a trial file has them: SI units, angles in radians, ``v`` to starboard.
 
-    table  a DataFrame, or a mapping of names to (n_samples,) numbers; time may be the index of a DataFrame, called "t";
-           columns the program does not know are kept where they hold numbers; units may stand behind the names of those
-           it knows, as in ``to_frame()`` of a trial and of a simulated run: "u [m/s]"
+    table  a DataFrame, or a mapping of names to (n_samples,) numbers; time may be the index of a DataFrame, called "t"
+           or of dates and times, which count from the first; columns the program does not know are kept where they hold
+           numbers; units may stand behind the names of those it knows, as in ``to_frame()`` of a trial and of a
+           simulated run: "u [m/s]"
     id     name of the trial, unique within a data set; files are named after it
     facts  fields of ``Trial``: ship, manoeuvre, source ("measured" or "generated"), note, group, cut_from, noise and
            derived
@@ -35,10 +36,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         what, fix = f"a trial has no fact '{unknown[0]}'", f"known here: {', '.join(FACTS)}"
         raise TrialError(Problem(what, unknown[0], "what a trial is beside its columns has a name", fix))
     where = id if isinstance(id, str) else brief(id)
-    index = getattr(table, "index", None)
-    time = str(getattr(index, "name", None))
-    if name_and_unit(time)[0] == "t" and time not in table and "t" not in table:
-        table = {time: index, **{name: table[name] for name in table}}
+    table = _with_time(table)
     if not hasattr(table, "keys"):
         fix = "give a DataFrame, or a dict of arrays"
         raise TrialError(Problem("this is no table", "table", f"{kind_of(table)} has no named columns", fix))
@@ -71,6 +69,17 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         raise TrialError(*problems)
     named = {"ship": "", "manoeuvre": "", "source": "", **facts}
     return Trial(id=id, **named, **fields_of(columns), ignored=tuple(ignored))
+
+
+def _with_time(table: Any) -> Any:
+    """The table with its index for its time, where that is called so or holds dates and times; else as it is."""
+    index: Any = getattr(table, "index", None)
+    time, dated = str(getattr(index, "name", None)), getattr(getattr(index, "dtype", None), "kind", "") in ("M", "m")
+    if not (dated or name_and_unit(time)[0] == "t") or not hasattr(table, "keys") or "t" in table or time in table:
+        return table
+    if dated and len(index):
+        index, time = (index - index[0]) / np.timedelta64(1, "s"), "t"
+    return {time: index, **{name: table[name] for name in table}}
 
 
 def _named(header: str) -> str:

@@ -35,6 +35,15 @@ def test_time_may_be_the_index_and_a_dict_will_do(table):
         np.testing.assert_array_equal(trial_of(other, "one").t, usual.t)
 
 
+@pytest.mark.parametrize("zone", [None, "Asia/Tokyo"])
+def test_dates_and_times_of_an_index_count_from_the_first(table, zone):
+    seconds = pd.to_timedelta(np.asarray(table["t"]), unit="s")
+    others = pd.DataFrame(table).drop(columns="t")
+    for index in (pd.Timestamp("2026-03-01 23:59:50", tz=zone) + seconds, seconds):
+        trial = trial_of(others.set_axis(index, axis=0), "a")
+        np.testing.assert_allclose(trial.t, np.asarray(table["t"]) - table["t"].iloc[0], atol=1e-9)
+
+
 def test_a_frame_goes_back_into_a_trial():
     trial = next(iter(load_trials("suzaku")))
     again = trial_of(trial.to_frame(), trial.id)
