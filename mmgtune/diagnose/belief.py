@@ -48,6 +48,10 @@ it that it leaves, from which it is no wind: gusts and another shape of the forc
 LEFT_AT_END = 1.0
 """Variance beyond noise, as a share of it, from which a single cause at the end of its range is not believed."""
 
+LEFT_ALONE = 0.3
+"""Variance beyond noise, as a share of it, and with a shape, from which a single cause is not believed that removes
+less than half of the held-out error: something else is there, that it may stand for."""
+
 NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up, unless all
 together leave nothing but noise of far more than noise: what stands for something else does not."""
@@ -100,8 +104,8 @@ class Belief:
     def unclear(self) -> str:
         """Why causes are not believed, in words; "" where they are.
 
-        A single one is doubted only where it was found once trials kept for testing were looked at too, and where its
-        size may be none, or is that of each run beside noise, and it removes little.
+        A single one is doubted only where it was found once trials kept for testing were looked at too, and where it
+        removes little and its size may be none, or is that of each run beside noise, or it leaves what has a shape.
 
         An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
         """
@@ -121,7 +125,11 @@ class Belief:
         if len(brought) < 2:
             if self.differs_by_run and self._faint and self.gain.surely_removed < AT_ALL:
                 return NEXT_TO_NOTHING
-            return not_told if self.gain.share_removed < TOLD else ""
+            if self.gain.share_removed >= TOLD:
+                return ""
+            if self.leftover.structured and self.rest > LEFT_ALONE:
+                return "it removes little of the error where nothing was fitted, and leaves more than noise"
+            return not_told
         terms = [one for one in brought if not one.apart]
         if self.more or len(terms) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"

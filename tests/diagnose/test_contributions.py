@@ -578,6 +578,10 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, sized=False), "how large wind would be is not told"),
         (sum_of(CLEAR, CLEAR, sized=False, tags=("wind", "wind")), ""),  # without either most of the error comes back
         (sum_of(CLEAR, SMALL_BUT_CLEAR, sized=False, tags=("current", "wind")), "how large wind would be is not told"),
+        (sum_of(CLEAR, removed=0.35, left=0.6, structured=True), "leaves more than noise"),  # a track without its sway
+        (sum_of(CLEAR, removed=0.35, left=0.6), ""),
+        (sum_of(CLEAR, removed=0.35, left=0.2, structured=True), ""),
+        (sum_of(CLEAR, removed=0.6, left=0.6, structured=True), ""),
         (sum_of(CLEAR, sized=False), ""),
         (sum_of(CLEAR, sized=False, removed=0.2), "how large wind would be is not told"),
         (sum_of(CLEAR, removed=0.2), ""),
