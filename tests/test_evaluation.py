@@ -139,8 +139,7 @@ def wild(suzaku) -> ShipProfile:
     from mmgtune.profile import parse_profile
 
     text = suzaku.profile.text
-    lines = ["N_r = 5.0" if line.startswith("N_r = ") else line for line in text.splitlines()]
-    lines = ["N_rrr = 400.0" if line.startswith("N_rrr = ") else line for line in lines]
+    lines = ["N_rrr = 400.0" if line.startswith("N_rrr = ") else line for line in text.splitlines()]
     return parse_profile("\n".join(lines) + "\n")
 
 

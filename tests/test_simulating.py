@@ -102,9 +102,8 @@ def test_a_ship_spins_that_turns_by_more_than_half_a_turn_between_samples(turn, 
 
 def test_a_ship_that_spins_is_said_and_is_not_good(tmp_path):
     text = (folder("ship_profiles") / "suzaku.toml").read_text(encoding="utf-8")
-    for name, value in (("Y_v", 0.9), ("N_v", 0.5), ("N_rrr", 0.9)):  # a yaw moment that grows with what it drives
-        text, found = re.subn(rf"(?m)^{name} *=.*", f"{name} = {value}", text)
-        assert found == 1
+    text, found = re.subn(r"(?m)^N_rrr *=.*", "N_rrr = 0.9", text)  # a yaw moment that grows with what it drives
+    assert found == 1
     (tmp_path / "spinning.toml").write_text(text, encoding="utf-8")
     ended = typed("simulate", "-p", tmp_path / "spinning.toml", "--turn", "35", "--out", tmp_path / "out", "--json")
     assert ended.code == 1
