@@ -10,6 +10,7 @@ import math
 import os
 import stat
 from dataclasses import dataclass
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -96,6 +97,11 @@ def too_fine(asked: float, rows: int, step: float, where: str, fix: str = GRID_S
         return None
     what = f"{asked:.4g} samples would be made of {rows} rows, with a step of {step:.4g} s"
     return Problem(what, where, f"the limit is {most} samples", fix)
+
+
+def is_real(value: object) -> bool:
+    """Whether a value is a real number; True and False are none, though Python counts them among them."""
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def as_float(number: Any) -> float:

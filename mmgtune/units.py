@@ -86,8 +86,10 @@ def read_as(unit: str, size: float = math.inf) -> tuple[str, float]:
     """
     if unit == "rad/s" and abs(size) < SLOW_DRIFT:
         return "°/min", 60.0 / DEG
+    if unit in ("N", "N m") and abs(size) < SMALL_FORCE:
+        return unit, 1.0
     word, factor = shown_in(unit)
-    if unit in _IN_SENTENCES and not (unit in ("N", "N m") and abs(size) < SMALL_FORCE):
+    if unit in _IN_SENTENCES:
         word = _IN_SENTENCES[unit]
         factor = 1.0 / _FACTORS[unit][word]
     return _SIGNS.get(word, word), factor

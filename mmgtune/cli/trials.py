@@ -59,11 +59,7 @@ def check(
             alike.setdefault((f.severity, f.what, f.why, f.fix), []).append(f.where)
         for (severity, what, why, fix), (first, *others) in alike.items():
             more = f", and {len(others)} more" if others else ""
-            c.show(
-                f"{severity}: {what} ({first}{more})"
-                + (f"\n  why: {why}" if why else "")
-                + (f"\n  fix: {fix}" if fix else "")
-            )
+            c.show(f"{severity}: {Problem(what, f'{first}{more}', why, fix)}")
         warnings = sum(f.severity == "warning" for findings in found.values() for f in findings)
         tune, test = len(data.tune) + len(data.tune_stated), len(data.test) + len(data.test_stated)
         c.show(f"{counted(len(found), 'trial')} can be used, {counted(warnings, 'warning')}; tune {tune}, test {test}")

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 
 from ..arrays import FloatArray, runs_of_true
 from ..errors import LogError, OptionError, Problem, brief
-from ..limits import as_float, too_fine
+from ..limits import as_float, is_real, too_fine
 from ..phrases import listed
 from .mapping import LogMap
 from .quantities import MEASURED, meaning
@@ -41,7 +40,7 @@ def hold_step(step: object) -> None:
     """Raises OptionError for what is no time step [s] of trials; None is the map's, or the log's own."""
     if step is None:
         return
-    if isinstance(step, bool) or not isinstance(step, Real):
+    if not is_real(step):
         why, fix = "it is in seconds", "give a number, such as step=0.5"
         raise OptionError(Problem(f"the step is {brief(step)}, not a number", "step", why, fix))
     if not 0.0 < as_float(step) < math.inf:

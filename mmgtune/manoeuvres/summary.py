@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from numbers import Real
 from typing import Any
 
 from ..errors import OptionError, Problem, brief, kind_of
-from ..limits import as_float
+from ..limits import as_float, is_real
 from ..units import DEG
 from .criteria import Criterion, check_turning, check_zigzag
 from .track import Track
@@ -56,7 +55,7 @@ _NUMBERS = {
 
 def _hold_number(name: str, value: object, above_0: bool = True) -> None:
     of, unit, whole, where, why = _NUMBERS[name]
-    if not isinstance(value, Real) or isinstance(value, bool):
+    if not is_real(value):
         why, fix = f"it is {whole} in {unit}", f"give a number; a profile has it as {where}"
         raise OptionError(Problem(f"{kind_of(value)} is no {of}", name, why, fix))
     if above_0 and not 0.0 < as_float(value) < math.inf:  # at a test speed of 0 no criterion is judged

@@ -14,7 +14,7 @@ from types import NoneType, UnionType
 from typing import Any, get_args, get_type_hints
 
 from ..errors import OptionError, Problem, among, brief, kind_of, repr_of
-from ..limits import as_float
+from ..limits import as_float, is_real
 
 INPUT, SEARCH, OUTPUT, REPRODUCE = "Input", "Search", "Output", "Reproducibility"
 """Panels of the help, in its order."""
@@ -303,7 +303,7 @@ def _as_text(value: Any, several: bool) -> Any:
     """Numbers as the texts that mean the same, one as the only one of several; everything else as it is."""
     if isinstance(value, (list, tuple)):
         return tuple(_as_text(part, False) for part in value)
-    if not isinstance(value, Real) or isinstance(value, bool):
+    if not is_real(value):
         return value
     number = as_float(value)
     text = str(int(number)) if number.is_integer() and abs(number) < 1e15 else str(number)

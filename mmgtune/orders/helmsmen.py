@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Protocol
 
 from ..errors import OptionError, Problem, brief
-from ..limits import as_float
+from ..limits import as_float, is_real
 
 RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
 """Rudder angle and check heading [rad] beyond which degrees are meant."""
 
 
-def _is_real(value: object) -> bool:
-    """Whether a value is a number; True and False are none, though Python counts them among them."""
-    return isinstance(value, Real) and not isinstance(value, bool)
-
-
 def is_number(value: object, *, least: float = -math.inf, above: float = -math.inf) -> bool:
     """Whether a value is a finite number, not below one limit and above the other."""
-    number = as_float(value) if _is_real(value) else math.nan
+    number = as_float(value) if is_real(value) else math.nan
     return math.isfinite(number) and number >= least and number > above
 
 
@@ -49,8 +44,8 @@ def started(at: float) -> None:
 
 def in_radians(angle: float, name: str, most: float) -> None:
     """Raises OptionError where an angle [rad] is no number, or so large that it must be in degrees."""
-    if not _is_real(angle) or math.isinf(as_float(angle)):
-        kind = "" if _is_real(angle) else ", not a number"
+    if not is_real(angle) or math.isinf(as_float(angle)):
+        kind = "" if is_real(angle) else ", not a number"
         what, fix = f"the {name} is {brief(angle)}{kind}", "write math.radians(35.0) for 35 deg"
         raise OptionError(Problem(what, "", "orders are in radians", fix))
     if not abs(angle) <= most:

@@ -121,10 +121,7 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         (("fit", "--starts"), ("--starts has no value (--starts)", "where its value belongs", "or leave")),
         (("fitt",), ("unknown command 'fitt' (mmgtune)", "names known here", "did you mean 'fit'")),
         (("import", "a.csv"), ("unknown command 'import' (mmgtune)", "", "fix: write mmgtune trials import")),
-        (
-            ("profile", "check"),
-            ("unknown command 'check'", "", "fix: write mmgtune profile validate"),
-        ),
+        (("profile", "check"), ("unknown command 'check'", "", "fix: write mmgtune profile validate")),
         (("trials", "show"), ("unknown command 'show' (mmgtune trials)", "", "fix: write mmgtune trials inspect")),
         (("version",), ("unknown command 'version'", "", "fix: write mmgtune --version")),
         (("help", "fit"), ("unknown command 'help'", "", "mmgtune fit --help")),

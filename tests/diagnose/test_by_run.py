@@ -218,11 +218,17 @@ def test_a_range_is_told_in_plain_numbers():
     assert range_in_words(0.3499, 0.3505, "m/s") == "0.35 m/s"
 
 
+def by_run(tag, names, rows, given=None):
+    """Values of runs, a row of estimates by parameter each."""
+    labels = tuple(f"trial:run{k}" for k in range(len(rows)))
+    ids = tuple((one,) for one in labels)
+    return ByRun(find_effect(tag), names, "trial", labels, ids, tuple(rows), given or {})
+
+
 def of_loading(values, stderr, apart):
     """Drafts of runs, each known to ``stderr``, and to ``apart`` beside the mean of all."""
     rows = [{"draught": Estimate("x", value, None, None, stderr, apart)} for value in values]
-    labels = tuple(f"trial:run{k}" for k in range(len(values)))
-    return ByRun(find_effect("loading"), ("draught",), "trial", labels, tuple((one,) for one in labels), tuple(rows))
+    return by_run("loading", ("draught",), rows)
 
 
 def test_what_is_common_to_all_errors_is_told_once():
@@ -240,13 +246,11 @@ def test_what_is_common_to_all_errors_is_told_once():
 def of_gains(values, rudder=(), shaft=()):
     """Gains of the rudder in runs with these largest rudder angles [deg] and revolutions [rpm]."""
     rows = [{"factor": Estimate("x", value, None, None, 0.004, 0.001)} for value in values]
-    labels = tuple(f"trial:run{k}" for k in range(len(values)))
     given = {
         "the largest rudder angle": tuple(angle * DEG for angle in rudder),
         "the revolutions": tuple(rpm / 60.0 for rpm in shaft),
     }
-    ids = tuple((one,) for one in labels)
-    return ByRun(find_effect("rudder-gain"), ("factor",), "trial", labels, ids, tuple(rows), given)
+    return by_run("rudder-gain", ("factor",), rows, given)
 
 
 @pytest.mark.parametrize(
@@ -311,11 +315,7 @@ def test_values_of_two_kinds_of_runs_may_be_of_what_was_ordered(values, rudder, 
 )
 def test_values_that_hang_on_one_run_that_hardly_has_one(values, hangs):
     rows = [{"angle": Estimate("x", value * DEG, None, None, 0.04 * DEG)} for value in values]
-    labels = tuple(f"trial:run{k}" for k in range(len(values)))
-    found = ByRun(
-        find_effect("rudder-offset"), ("angle",), "trial", labels, tuple((one,) for one in labels), tuple(rows)
-    )
-    why = belief_with(causes=(SimpleNamespace(runs=found),))._bent
+    why = belief_with(causes=(SimpleNamespace(runs=by_run("rudder-offset", ("angle",), rows)),))._bent
     assert why == ("only one run has a value for certain, and hardly" if hangs else "")
 
 
@@ -328,9 +328,7 @@ def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
             }
             for speed, degrees in pairs
         ]
-        labels = tuple(f"trial:run{k}" for k in range(len(pairs)))
-        ids = tuple((one,) for one in labels)
-        return ByRun(find_effect("wind"), ("speed", "direction"), "trial", labels, ids, tuple(rows))
+        return by_run("wind", ("speed", "direction"), rows)
 
     assert runs((10.2, 239.6), (10.2, 244.2), (9.6, 242.4), (11.6, 238.0)).sentence == (
         "The wind was much the same in each run: 9.6 to 11.6 m/s, from 241°"

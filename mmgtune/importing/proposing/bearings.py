@@ -186,15 +186,12 @@ def _of_pair(
             heading = np.exp(1j * psi[known])
             if 1.0 - abs(heading.mean()) < 0.2 * TURNED:
                 continue
-            straight = None
             for sense in (1.0, -1.0):
                 off = course[known] * (heading.conj() if sense > 0 else heading)
                 told = 1.0 - (1.0 - abs(off.mean())) / spread
                 if told < 0.3:
                     continue
-                if straight is None:
-                    straight = _straight(slopes[k][used][known])
-                ahead = float(np.angle(np.mean(off * straight)))
+                ahead = float(np.angle(np.mean(off * _straight(slopes[k][used][known]))))
                 for track, cost in _readings(i, j, k, sense, ahead, geographic, degrees, windows, said):
                     words = f"the course follows it: {100.0 * told:.0f} % of the course's changes"
                     found.append((track, told - cost, words))
