@@ -14,7 +14,7 @@ from .base_fit import PRECISE
 from .hypotheses import Hypothesis
 from .intervals import Estimate
 from .linear import linearise
-from .refit import ENOUGH
+from .refit import ENOUGH, Refit
 from .refitter import Known, Refitter, Stopped
 from .refitting import Refitting
 from .screening import scores
@@ -37,6 +37,9 @@ ALSO, FAR_LESS = 0.75, 0.02
 """Share of what re-tuning removes beyond which another effect does much the same, as any does of a ship that is unlike
 her profile in many ways; and the share of what that one leaves that the best may leave then."""
 
+ALIKE = 0.95
+"""Share of what a cause removes from which another form of the same cause is told beside it."""
+
 
 @dataclass(frozen=True)
 class Instead:
@@ -45,6 +48,7 @@ class Instead:
 
     words       the cause as a sentence without its full stop
     share       of the fall of chi-squared by re-tuning that it brings
+    forms       other forms of it that do nearly the same, as such sentences
     next_effect tag of the next best effect, "" where none was worth following to its end
     next_share  that it brings
     """
@@ -54,6 +58,7 @@ class Instead:
     share: float
     next_effect: str
     next_share: float
+    forms: tuple[str, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -61,7 +66,7 @@ class Instead:
         other = f"no other promises more than {100.0 * MATTERS:.0f} %"
         if self.next_effect:
             other = f"the next best, {self.next_effect}, {in_percent(self.next_share)}"
-        words = self.words[0].lower() + self.words[1:]
+        words = "; or ".join([_small(self.words), *(_told_apart(form, self.words) for form in self.forms)])
         return (
             "Re-tuning may stand for a cause: with all coefficients as the profile has them, one cause alone removes "
             f"{in_percent(self.share)} of what re-tuning removes, {other}. If so: {words}."
@@ -75,6 +80,7 @@ class Instead:
             "share": self.share,
             "next_effect": self.next_effect or None,
             "next_share": self.next_share if self.next_effect else None,
+            "forms": list(self.forms),
         }
 
 
@@ -112,17 +118,36 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
         told = fall - best.gain <= (FAR_LESS if next_gain > ALSO * fall else OF_OTHERS) * (fall - next_gain)
     if not told:
         return None
-    end = best.point
-    end = bench.refit(end.names, end.unit[:, None], end.offsets, integrator=end.integrator, tolerance=PRECISE)
-    unit = dict(zip(end.names, end.unit, strict=True))
-    if any(not 0.0 < unit[name] < 1.0 for name in best.hypothesis.names):  # no such size is thought possible
+    words = _in_words(bench, best)
+    if not words:
         return None
-    sizes = {name: Estimate(name, value, None, None, None) for name, value in bench.values(end).items()}
-    effect = best.hypothesis.effect
-    own = {name: size for name, size in sizes.items() if name in best.hypothesis.names}
-    words = effect.sentence(parameters_in_words(effect, own))
+    alike = [fit for fit in fits[1:] if fit.hypothesis.tag == best.hypothesis.tag and fit.gain > ALIKE * best.gain]
+    forms = tuple(filter(None, (_in_words(bench, fit) for fit in alike)))
     tag = other.hypothesis.tag if other else ""
-    return Instead(effect.tag, words, min(best.gain / fall, 1.0), tag, next_gain / fall)
+    return Instead(best.hypothesis.tag, words, min(best.gain / fall, 1.0), tag, next_gain / fall, forms)
+
+
+def _in_words(bench: Workbench, fit: Refit) -> str:
+    """A cause as a sentence without its full stop; "" where it ends at an end of its range."""
+    there, hypothesis = fit.point, fit.hypothesis
+    end = bench.refit(there.names, there.unit[:, None], there.offsets, integrator=there.integrator, tolerance=PRECISE)
+    unit = dict(zip(end.names, end.unit, strict=True))
+    if any(not 0.0 < unit[name] < 1.0 for name in hypothesis.names):  # no such size is thought possible
+        return ""
+    values = bench.values(end)
+    own = {name: Estimate(name, values[name], None, None, None) for name in hypothesis.names}
+    return hypothesis.effect.sentence(parameters_in_words(hypothesis.effect, own))
+
+
+def _small(sentence: str) -> str:
+    """A sentence as it goes on behind a colon."""
+    return sentence[0].lower() + sentence[1:]
+
+
+def _told_apart(sentence: str, first: str) -> str:
+    """A sentence behind one that begins alike: only what stands behind the colon then."""
+    head, colon, rest = sentence.partition(": ")
+    return rest if colon and first.startswith(head + colon) else _small(sentence)
 
 
 def _untuned(bench: Workbench, tuned: Point) -> Point:

@@ -132,14 +132,12 @@ def _of_none(answer: Answer) -> list[str]:
     if far := moved_in_words(answer.moved):
         said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
         return [said, besides(answer.moved), weighed(answer.moved), few, _fading(answer)]
-    return [
-        f"Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and {none}.",
-        far_off(answer.moved),
-        weighed(answer.moved),
-        answer.instead.sentence if answer.instead else "",
-        few,
-        _fading(answer),
-    ]
+    beside = [far_off(answer.moved), weighed(answer.moved), answer.instead.sentence if answer.instead else ""]
+    noise = "the noise of the measurements"
+    first = f"Nothing is wrong beyond {noise}: the re-tuned model fits these trials, and {none}."
+    if any(beside):  # it fits, which is not to say that nothing is wrong
+        first = f"The re-tuned model fits these trials to {noise}, and {none}."
+    return [first, *beside, few, _fading(answer)]
 
 
 def _fading(answer: Answer) -> str:

@@ -8,7 +8,7 @@ import pytest
 
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.hypotheses import Hypothesis, hypotheses
-from mmgtune.diagnose.instead import instead_of_tuning
+from mmgtune.diagnose.instead import Instead, instead_of_tuning
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.effects import find_effect
@@ -44,6 +44,17 @@ def test_water_that_the_hull_took_up_is_told(tmp_path):
     assert "one cause alone removes" in found.sentence
     (depth,) = re.findall(r"If so: the ship sailed in shallow water, as if ([0-9.]+) m deep\.", found.sentence)
     assert float(depth) == pytest.approx(9.0, abs=0.1)
+
+
+def test_other_forms_of_the_cause_are_told_beside_it():
+    loaded = "The ship was loaded otherwise than the profile says"
+    forms = (f"{loaded}: 0.8 times the displacement", "The water was shallow")
+    found = Instead("loading", f"{loaded}: a trim by the stern of 0.4 of the draught", 0.99, "", 0.0, forms)
+    assert found.sentence.endswith(
+        "If so: the ship was loaded otherwise than the profile says: a trim by the stern of 0.4 of the draught; "
+        "or 0.8 times the displacement; or the water was shallow."
+    )
+    assert found.to_dict()["forms"] == list(forms)
 
 
 @pytest.mark.long

@@ -46,6 +46,7 @@ def test_a_hull_far_off_is_no_loading(tmp_path):
     assert "a hull further off than believed would explain as well" in result.sentence()
     assert "a hull further off than believed would explain it as well" in trace.sentence
     assert any("leeway=0.1" in note for note in result.warnings)
+    assert not result.sentence().startswith("Nothing is wrong")  # it fits, by a hull that is far off
 
 
 @pytest.mark.long
