@@ -124,9 +124,7 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
     inputs = tuple(predictor.inputs)
     for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
         some = trials[portion]
-        start = None
-        if offsets is not None:
-            start = [trial.motion[0] + own for trial, own in zip(some, offsets[portion], strict=True)]
+        start = None if offsets is None else begun(some, offsets[portion])
         cases = cases_from(some, inputs, draught_of(predictor), initial=start)
         found = predicted(predictor, cases)
         for i, trial in enumerate(some):
@@ -135,6 +133,11 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
             for k in range(predictor.n_members):
                 states = np.array(found.states[i, k, : trial.n_samples])
                 yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), inputs, k, around)
+
+
+def begun(trials: Sequence[Trial], offsets: FloatArray) -> list[FloatArray]:
+    """States (6,) that trials begin with: the first measured ones with offsets (n_trials, 6) added."""
+    return [trial.motion[0] + own for trial, own in zip(trials, offsets, strict=True)]
 
 
 def breakdown(

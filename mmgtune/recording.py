@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from .arrays import FloatArray
 from .documents import write_json
 from .files import all_or_none, path_of, refuse_existing, write_text
 from .inputs import INPUTS
-from .motions import Motion, orders_of, simulate_trials
+from .motions import Motion, motions, orders_of
 from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
 from .provenance import made_by
@@ -74,7 +76,8 @@ def write_validation(
     refuse_existing([folder / "validate.json", folder / MOTIONS], overwrite)
     restart = result.options.restart
     pieces = list((data.in_windows(restart) if restart else data).trials.values())[:MOST]
-    names = write_motions({one.name: one.predictor for one in result.profiles}, pieces, folder)
+    offsets = {one.name: one.offsets[: len(pieces)] for one in result.profiles if one.offsets is not None}
+    names = write_motions({one.name: one.predictor for one in result.profiles}, pieces, folder, offsets)
     ships = [profile for one in result.profiles if (profile := profile_of(one.predictor)) is not None]
     document = {
         **result.to_dict(),
@@ -90,8 +93,15 @@ def write_validation(
     return document
 
 
-def write_motions(models: Mapping[str, Predictor], pieces: Sequence[Trial], folder: Path) -> list[str]:
+def write_motions(
+    models: Mapping[str, Predictor],
+    pieces: Sequence[Trial],
+    folder: Path,
+    offsets: Mapping[str, FloatArray] = MappingProxyType({}),
+) -> list[str]:
     """Write motions.parquet: trials as measured, and as the first member of each model makes them.
+
+    offsets  (n_pieces, 6) added to the first measured states, by name of the models that have some
 
     Returns the names of what drives the models, of which there is a column each.
     """
@@ -100,7 +110,7 @@ def write_motions(models: Mapping[str, Predictor], pieces: Sequence[Trial], fold
     for trial in pieces:
         _add(columns, trial.id, "measured", trial.t, trial.motion, trial.inputs(names))
     for called, predictor in models.items():
-        for motion in _first_members(simulate_trials(predictor, pieces)):
+        for motion in _first_members(motions(predictor, pieces, offsets.get(called))):
             given = dict(zip(predictor.inputs, motion.controls.T, strict=True))
             driven = np.column_stack([given.get(name, np.full(len(motion.t), np.nan)) for name in names])
             _add(columns, motion.id, called, motion.t, motion.states, driven)
@@ -108,8 +118,8 @@ def write_motions(models: Mapping[str, Predictor], pieces: Sequence[Trial], fold
     return names
 
 
-def _first_members(motions: Sequence[Motion]) -> list[Motion]:
-    return [motion for motion in motions if motion.member == 0]
+def _first_members(several: Iterable[Motion]) -> list[Motion]:
+    return [motion for motion in several if motion.member == 0]
 
 
 def _columns(inputs: Sequence[str]) -> dict[str, list[Any]]:

@@ -18,6 +18,7 @@ from .errors import OptionError, Problem, brief, kind_of
 from .evaluation import TrialRecord, records
 from .given import ShipGiven, TrialsGiven, some_of
 from .model import Model
+from .motions import begun, sized
 from .networks import named_ship
 from .objective import spread, varying
 from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, predicted
@@ -129,12 +130,14 @@ def score(
     theta: FloatArray | None = None,
     integrator: Integrator = Integrator(),
     backend: str = "compiled",
+    offsets: FloatArray | None = None,
 ) -> list[TrialScore]:
     """Scores of trials, each simulated from its first measured state with its measured inputs.
 
     ship, trials  objects, paths or bundled names; ``ship`` may be any predictor, ``trials`` a list of trials
     sigma  what differences of each state are divided by in L_MSE [SI]; their spread in the trials where None
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
+    offsets  (n_trials, 6) added to the first measured states, where these are estimated
     -> trial by trial, and of each all members
     Raises TrialError where there are no trials, and OptionError for a sigma that lacks a state or is not above 0.
     Windows of long trials are trials like any other (``TrialSet.in_windows``).
@@ -142,7 +145,9 @@ def score(
     predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
     several = some_of(trials)
     sigma = varying(spread(several), "trials", "give sigma") if sigma is None else scales_of(sigma)
-    return [score_of(record, sigma) for record in records(predictor, several)]
+    if offsets is not None:
+        offsets = sized(offsets, "offsets", (len(several), len(STATES)), "each trial has its own first state")
+    return [score_of(record, sigma) for record in records(predictor, several, offsets=offsets)]
 
 
 def scales_of(sigma: object) -> dict[str, float]:
@@ -166,15 +171,20 @@ def scales_of(sigma: object) -> dict[str, float]:
     return {name: float(sigma[name]) for name in STATES}
 
 
-def window_scores(predictor: Predictor, trials: Sequence[Trial]) -> list[WindowScore]:
+def window_scores(
+    predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray | None = None
+) -> list[WindowScore]:
     """How well all members together foretell trials, or windows of them, each from its first measured state.
+
+    offsets  (n_trials, 6) added to the first measured states, where these are estimated
 
     Each sample of each state after the first counts where it was measured.
     """
     found = []
     for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
         some = trials[portion]
-        made = predicted(predictor, cases_from(some, tuple(predictor.inputs), draught_of(predictor)))
+        start = None if offsets is None else begun(some, offsets[portion])
+        made = predicted(predictor, cases_from(some, tuple(predictor.inputs), draught_of(predictor), initial=start))
         for i, trial in enumerate(some):
             states, truth = made.states[i, :, 1 : trial.n_samples], trial.motion[1:]
             facts = trial.id, trial.whole, trial.run, trial.manoeuvre

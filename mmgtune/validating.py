@@ -8,10 +8,11 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from .arrays import FloatArray
 from .bands import Pooled, pooled, pooled_by
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem
-from .first_states import J_of_noise, in_words
+from .first_states import J_of_noise, estimated, in_words
 from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
 from .networks import named_ship
@@ -34,6 +35,8 @@ class Scored:
     """One predictor: what it was called, its scores by trial or window, its manoeuvres repeated where asked for, and
     what it makes of indices that are stated, notes on what was around the ship, and of several particles how well their
     bands hold what was measured, by kind of manoeuvre ("" where trials do not say) and under None all together.
+
+    offsets  (n_pieces, 6) of the first measured states where these are estimated, else None
     """
 
     name: str
@@ -43,6 +46,7 @@ class Scored:
     stated: tuple[IndexComparison, ...] = ()
     notes: tuple[str, ...] = ()
     bands: Mapping[str | None, Pooled] = field(default_factory=dict)
+    offsets: FloatArray | None = None
 
     def __repr__(self) -> str:
         """In a line."""
@@ -114,6 +118,7 @@ class Validation(Plotted):
             "kind": "validate",
             "trials": self.trials,
             "window_s": self.options.restart,
+            "initial": self.options.initial,
             "sigma": dict(self.sigma),
             "sigma_from": self.sigma_from,
             "integrator": self.options.integrator,
@@ -129,7 +134,8 @@ def validate(
     trials: TrialsGiven,
     options: ValidateOptions = ValidateOptions(),
 ) -> Validation:
-    """Score predictors on trials, each trial or window of it simulated from its first measured state.
+    """Score predictors on trials, each trial or window of it simulated from its first measured state, or from the one
+    within the noise of that from which the predictor follows best.
 
     profiles  one or several: profiles, models, predictors, paths or bundled names; a mapping gives each a name, of
               others the second of the same name is called "name (2)"
@@ -152,11 +158,15 @@ def validate(
         own = getattr(predictor, "id", None) if profile_of(predictor) is None else None
         if own and data.ship and data.ship != own:
             notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]
-        scores = tuple(score(predictor, pieces, sigma)) if pieces else ()
-        notes += _of_noise(predictor, pieces, scores)
+        offsets = None
+        if options.initial == "estimated":
+            offsets = estimated(predictor, pieces, make_objective(predictor.L_pp))
+        scores = tuple(score(predictor, pieces, sigma, offsets=offsets)) if pieces else ()
+        if offsets is None:
+            notes += _of_noise(predictor, pieces, scores)
         stated = _stated(predictor, data, options.backend)
-        bands = bands_of(predictor, pieces, sigma) if pieces else {}
-        scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands))
+        bands = bands_of(predictor, pieces, sigma, offsets) if pieces else {}
+        scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands, offsets))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options, tuple(pieces), tuple(odd))
 
 
@@ -166,7 +176,7 @@ def _of_noise(predictor: Predictor, pieces: Sequence[Trial], scores: Sequence[Tr
         return []
     of_noise = float(J_of_noise(predictor, pieces, make_objective(predictor.L_pp)).sum())
     words = in_words(sum(one.J for one in scores), of_noise, "on these trials")
-    return [f"{words}; fits with initial=estimated, and diagnoses, take that out"] if words else []
+    return [f"{words}; initial=estimated takes that out"] if words else []
 
 
 def sigma_of(data: TrialSet, sigma_from: str | None, called: str) -> dict[str, float]:
@@ -203,8 +213,12 @@ def predictors_of(
     }
 
 
-def bands_of(predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, float]) -> dict[str | None, Pooled]:
+def bands_of(
+    predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, float], offsets: FloatArray | None = None
+) -> dict[str | None, Pooled]:
     """Scores of the bands of a predictor that draws particles, or has several members; of others nothing.
+
+    offsets  (n_pieces, 6) of the first measured states, or None
 
     By kind of manoeuvre, and under None all together.
     """
@@ -212,7 +226,7 @@ def bands_of(predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, 
     particles = particles_of(predictor, how.particles, how.seed)
     if particles.n_members < 2:
         return {}
-    found = window_scores(particles, pieces)
+    found = window_scores(particles, pieces, offsets)
     whole: dict[str | None, Pooled] = {None: pooled(found, sigma)}
     return whole | dict(pooled_by(lambda one: one.manoeuvre, found, sigma))
 

@@ -39,8 +39,9 @@ def command(
 ) -> None:
     """Score profiles on trials: J and the standardised error L_MSE, per trial and per kind of manoeuvre.
 
-    Each trial, or window of it, is simulated from its first measured state with its measured inputs. L_MSE is the mean
-    over time of the sum over all six states of squared differences over their variances (Wakita et al. 2022, eq. 26).
+    Each trial, or window of it, is simulated with its measured inputs from its first measured state, or from one within
+    the noise of that (--initial estimated). L_MSE is the mean over time of the sum over all six states of squared
+    differences over their variances (Wakita et al. 2022, eq. 26).
 
     Logs of hours and days are voyages: they say manoeuvre "voyage", or last more than an hour. They are cut into
     windows of 120 s, or --restart, and seven distance measures tell how far each model is off, and where its error
@@ -131,7 +132,8 @@ def summary(result: Validation) -> str:
 
     lines = []
     for one in result.to_dict()["profiles"]:
-        lines.append(f"{one['profile']} ({one['id']}), {one['method']}")
+        begun = ", first states estimated" if result.options.initial == "estimated" else ""
+        lines.append(f"{one['profile']} ({one['id']}), {one['method']}{begun}")
         if one.get("stated"):
             lines += [
                 "",

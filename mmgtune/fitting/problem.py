@@ -11,10 +11,10 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..backends import WIDTH, Backend, Cases, Integrator
+from ..first_states import prior_weight
 from ..model import Model
 from ..predictor import PhysicsPredictor, Prediction
 from .box import Box, base_of, group_of
-from .initial import prior_weight
 from .terms import Term
 
 PerCase = TypeVar("PerCase", FloatArray, IntArray)

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..first_states import LARGEST
 from .bounded import bounded_steps
-from .initial import LARGEST
 from .problem import FitProblem
 
 

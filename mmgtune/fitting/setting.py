@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import STATES, Backend, Integrator, get_backend
 from ..errors import OptionError, Problem
+from ..first_states import deviations
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, TuningOptions
@@ -17,7 +18,6 @@ from ..profile import ShipProfile
 from ..stated import possible
 from ..trial import Coverage, TrialSet
 from .box import Box, choose_targets, make_box
-from .initial import deviations
 from .one_sided import tied
 from .pooled import Pooled, SistersPrior, pooled, read_sisters, with_sisters
 from .problem import FitProblem

@@ -61,7 +61,7 @@ def _validated(result: Validation) -> Mapping[str, list[Line]]:
     from ..motions import motions
 
     for model in result.profiles:
-        for run in motions(model.predictor, result.pieces):
+        for run in motions(model.predictor, result.pieces, model.offsets):
             if not run.diverged and run.member == 0:
                 found[run.id].append(simulated(run, model.name))
     return found

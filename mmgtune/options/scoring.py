@@ -9,7 +9,7 @@ from ..errors import Problem
 from .choice import INPUT, again, choice
 from .particles import ParticleOptions
 from .simulation import SimulationOptions
-from .tuning import LeaveOutOptions
+from .tuning import LeaveOutOptions, TuningOptions
 
 if TYPE_CHECKING:
     from ..backends import Integrator
@@ -36,6 +36,7 @@ class ValidateOptions(SimulationOptions):
         None, "Trials whose spread L_MSE is counted in. Default: the trials scored.", panel=INPUT
     )
     manoeuvres: bool = again(LeaveOutOptions, "manoeuvres")
+    initial: str = again(TuningOptions, "initial", but="Indices of --manoeuvres begin as they were measured.")
 
 
 @dataclass(frozen=True)

@@ -88,8 +88,9 @@ def _verdict(record: ValidationRecord) -> str:
     if best is None:
         return "Every model diverged on some trial." if record.scored else "Models against what is stated."
     place, heading = _errors(record, best)
-    window = number(record.data["window_s"])
-    over = f"Over {shown(window, 3)} s from a measured state" if window else "Over whole trials"
+    data = record.data
+    window = number(data["window_s"])
+    over = f"Over {shown(window, 3)} s from {_beginning(data)}" if window else "Over whole trials"
     off = f"{shown(place, 3)} m and {shown(heading, 2)}° off (root mean square over all samples)"
     if len(record.models) == 1:
         return f"{over} {best['called']} is {off}."
@@ -138,12 +139,19 @@ def _motions(record: ValidationRecord) -> Section | None:
     worst = sorted(range(len(manoeuvres)), key=lambda k: -_size(by_id.get(list(record.motions)[k])))
     drawn = [manoeuvres[k] for k in sorted(worst[:12])]
     block = motion_block.of_manoeuvres(
-        manoeuvres, runs, record.inputs, "Simulated from the first measured state with the measured inputs.",
+        manoeuvres, runs, record.inputs, f"Simulated from {_beginning(record.data)} with the measured inputs.",
         said="Tracks as measured and simulated.", drawn=drawn, selected=worst[0], L_pp=number(record.data.get("L_pp")),
         notes=(motion_block.FULL,),
         why=f", on which {first['called']} does worst",
     )  # fmt: skip
     return Section("motions", "Tracks and time histories", (block,))
+
+
+def _beginning(data: Mapping[str, Any]) -> str:
+    """What each simulation begins with."""
+    if data.get("initial") == "estimated":
+        return "a state within the noise of the first measured one, from which it follows best,"
+    return "the first measured state"
 
 
 def _size(row: Mapping[str, Any] | None) -> float:

@@ -130,9 +130,9 @@ def validate_voyages(
     resume    continue what was stopped in the folder; a predictor without a profile counts as the same by its name
 
     r_max of cVDM is the ship's: as given, else the first physics model's in its own turn, else of the logs.
-    Raises OptionError for no profile, for repeated manoeuvres, and where there is nothing to resume or it belongs to
-    another run; OutputError where the folder cannot be written to; TrialError for what is wrong with a file, and where
-    no window could be cut.
+    Raises OptionError for no profile, for repeated manoeuvres, for first states to be estimated, and where there is
+    nothing to resume or it belongs to another run; OutputError where the folder cannot be written to; TrialError for
+    what is wrong with a file, and where no window could be cut.
     """
     folder = kept_in(folder, resume)
     must_be(options, VoyageOptions)
@@ -141,6 +141,10 @@ def validate_voyages(
     if options.manoeuvres:
         why = "a voyage is no turning circle and no zigzag"
         raise OptionError(Problem("manoeuvres of voyages cannot be repeated", "manoeuvres", why, "leave it out"))
+    if options.initial != "measured":
+        why = "thousands of windows begin at their first samples, and what their noise brings is scored with them"
+        fix = "leave it out, or validate on trials cut from the voyages"
+        raise OptionError(Problem("first states of voyages are not estimated", "initial", why, fix))
     predictors = predictors_of(profiles, options)
     data = voyages if isinstance(voyages, VoyageSet) else load_voyages(voyages)
     told = Hooks() if hooks is None else hooks
