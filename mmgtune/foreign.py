@@ -7,7 +7,7 @@ what it predicts are held against what ``predictor.Predictor`` promises.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +16,7 @@ from .arrays import BoolArray, FloatArray
 from .backends import STATES, Cases
 from .errors import OptionError, Problem, brief, kind_of
 from .inputs import INPUTS, meant_by
+from .limits import as_float, is_real
 
 
 class Told(NamedTuple):
@@ -31,7 +32,7 @@ def _is_text(value: object) -> bool:
 
 
 def _is_length(value: Any) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool) and 0.0 < float(value) < np.inf
+    return is_real(value) and 0.0 < as_float(value) < np.inf
 
 
 def _is_count(value: object) -> bool:

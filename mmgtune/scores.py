@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from .displayed import Brief
 from .errors import OptionError, Problem, brief, kind_of
 from .evaluation import TrialRecord, records
 from .given import ShipGiven, TrialsGiven, some_of
+from .limits import as_float, is_real
 from .model import Model
 from .motions import begun, sized
 from .networks import named_ship
@@ -166,7 +166,7 @@ def scales_of(sigma: object) -> dict[str, float]:
     if missing:
         raise OptionError(Problem(f"sigma says nothing of {', '.join(missing)}", "sigma", why, example))
     for name, value in sigma.items():
-        if not isinstance(value, Real) or not 0.0 < float(value) < math.inf:
+        if not is_real(value) or not 0.0 < as_float(value) < math.inf:
             raise OptionError(Problem(f"sigma of {name} is {brief(value)}", "sigma", why, "give a number above 0"))
     return {name: float(sigma[name]) for name in STATES}
 

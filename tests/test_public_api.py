@@ -169,6 +169,7 @@ CONTROLS = np.tile([1.7, 0.1], (9, 1))
         (lambda: mmgtune.score(SHIP, TRIALS, {"v": 1.0}), "sigma is of no state 'v'", "for each of x, y"),
         (lambda: mmgtune.score(SHIP, TRIALS, 1.0), "sigma is a float", "by name"),
         (lambda: mmgtune.score(SHIP, TRIALS, {**SIGMA, "r": 0.0}), "sigma of r is 0.0", "a number above 0"),
+        (lambda: mmgtune.score(SHIP, TRIALS, {**SIGMA, "r": 10**400}), "sigma of r is a number of", "above 0"),
         (lambda: mmgtune.score(SHIP, TRIALS, {**SIGMA, "r": "1"}), "sigma of r is '1'", "a number above 0"),
         (lambda: mmgtune.breakdown(SHIP, np.zeros(6), CONTROLS), "states has shape (6,)", "(n_samples, 6)"),
         (lambda: mmgtune.breakdown(SHIP, np.zeros((9, 5)), CONTROLS), "states has shape (9, 5)", "(n_samples, 6)"),

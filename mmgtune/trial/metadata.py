@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from ..errors import Problem, among, brief, reason
 from ..files import can_name_file
-from ..limits import FACTS_BYTES, NAME, NESTING
+from ..limits import FACTS_BYTES, NAME, NESTING, as_float, is_real
 from ..toml_reading import depth, finite
 from .schema import COLUMNS, LARGEST, METADATA, MOTION, SCHEMA, SOURCES, impossible, known_column
 
@@ -45,7 +44,7 @@ def as_json(facts: Mapping[str, Any]) -> dict[str, Any]:
     noise, derived = facts.get("noise"), facts.get("derived")
     made = dict(facts)
     if isinstance(noise, Mapping):
-        made["noise"] = {name: float(one) if isinstance(one, Real) else one for name, one in noise.items()}
+        made["noise"] = {name: as_float(one) if is_real(one) else one for name, one in noise.items()}
     if isinstance(derived, tuple):
         made["derived"] = list(derived)
     return made

@@ -118,6 +118,7 @@ def test_an_id_that_cannot_name_a_file(table, tmp_path, id):
     [
         ({"source": "guessed"}, "source is 'guessed'"),
         ({"noise": {"x": -1.0}}, "not a standard deviation"),
+        ({"noise": {"x": 10**400}}, "not a standard deviation"),
         ({"noise": {"x": float("nan")}}, "noise of 'x' is nan"),
         ({"noise": {"z": 1.0}}, "noise of unknown column 'z'"),
         ({"derived": ("delta",)}, "not a list of motion columns"),
