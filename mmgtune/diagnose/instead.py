@@ -63,13 +63,18 @@ class Instead:
     @property
     def sentence(self) -> str:
         """What re-tuning may stand for."""
-        other = f"no other promises more than {100.0 * MATTERS:.0f} %"
+        words = "; or ".join([_small(self.words), *(_told_apart(form, self.words) for form in self.forms)])
+        return f"Re-tuning may stand for a cause: {words}."
+
+    @property
+    def why(self) -> str:
+        """Why it may, in a sentence."""
+        other = f"no other cause promises more than {100.0 * MATTERS:.0f} %"
         if self.next_effect:
             other = f"the next best, {self.next_effect}, {in_percent(self.next_share)}"
-        words = "; or ".join([_small(self.words), *(_told_apart(form, self.words) for form in self.forms)])
         return (
-            "Re-tuning may stand for a cause: with all coefficients as the profile has them, one cause alone removes "
-            f"{in_percent(self.share)} of what re-tuning removes, {other}. If so: {words}."
+            f"With all coefficients as the profile has them, that alone removes {in_percent(self.share)} of what "
+            f"re-tuning removes; {other}."
         )
 
     def to_dict(self) -> dict[str, Any]:

@@ -38,17 +38,17 @@ class Said(NamedTuple):
     @property
     def headline(self) -> str:
         """The answer without what explains it."""
-        return " ".join(filter(None, (self.first, self.leading)))
+        return _joined(self.first, self.leading)
 
     @property
     def explained(self) -> str:
         """What explains the headline, and what is said beside."""
-        return " ".join(filter(None, (self.why, self.beside)))
+        return _joined(self.why, self.beside)
 
     @property
     def sentence(self) -> str:
         """All of it."""
-        return " ".join(filter(None, self))
+        return _joined(*self)
 
 
 def said(answer: Answer) -> Said:
@@ -64,11 +64,11 @@ def said(answer: Answer) -> Said:
         unknown = _of_the_unknown(answer)
         pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
         first, *why = [*pieces, unknown.why]
-        return Said(first, " ".join(filter(None, why)), unknown.leading, " ".join(more))
+        return Said(first, _joined(*why), unknown.leading, " ".join(more))
     apart = f"{capital(jumps_in_words(answer.jumped))}. Apart from that: " if answer.jumped else ""
     if answer.verdict == "none":
-        first, *why = _of_none(answer)
-        return Said(apart + first, " ".join(filter(None, why)), beside=" ".join(more))
+        one = _of_none(answer)
+        return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
     return Said(" ".join([apart + _of_causes(answer), *more]))
 
 
@@ -107,17 +107,17 @@ def _of_causes(answer: Answer) -> str:
     )
 
 
-def _of_none(answer: Answer) -> list[str]:
-    """That no cause shows, first; what re-tuning changed, and what the log of the inputs leaves open."""
+def _of_none(answer: Answer) -> Said:
+    """That no cause shows; what re-tuning changed and may stand for, and what the log of the inputs leaves open."""
     if answer.swell:
-        return [answer.swell]
+        return Said(answer.swell)
     if answer.leaves_open:
         left_open = (
             f"The re-tuned model leaves {_of_noise(answer.leftover.left_open)} of the sensors, "
             "no more than what revolutions and rudder angle did between two samples of their log leaves "
             "open: inputs logged more often would tell more."
         )
-        return ["No cause shows.", left_open]
+        return Said("No cause shows.", left_open)
     alone = ", ".join(dict.fromkeys(one.cause.tag for one in answer.traces if one.contribution.harmful))
     like_hull = listed([one.cause.tag for one in answer.traces if one.contribution.like_hull])
     none = f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
@@ -131,13 +131,19 @@ def _of_none(answer: Answer) -> list[str]:
         )
     if far := moved_in_words(answer.moved):
         said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-        return [said, besides(answer.moved), weighed(answer.moved), few, _fading(answer)]
-    beside = [far_off(answer.moved), weighed(answer.moved), answer.instead.sentence if answer.instead else ""]
+        return Said(said, _joined(besides(answer.moved), weighed(answer.moved), few, _fading(answer)))
+    far = _joined(far_off(answer.moved), weighed(answer.moved))
     noise = "the noise of the measurements"
     first = f"Nothing is wrong beyond {noise}: the re-tuned model fits these trials, and {none}."
-    if any(beside):  # it fits, which is not to say that nothing is wrong
+    if far or answer.instead:  # it fits, which is not to say that nothing is wrong
         first = f"The re-tuned model fits these trials to {noise}, and {none}."
-    return [first, *beside, few, _fading(answer)]
+    why = _joined(far, few, _fading(answer))
+    return Said(first, why, answer.instead.sentence, answer.instead.why) if answer.instead else Said(first, why)
+
+
+def _joined(*sentences: str) -> str:
+    """Sentences in a row, those that say nothing left out."""
+    return " ".join(filter(None, sentences))
 
 
 def _fading(answer: Answer) -> str:

@@ -41,8 +41,8 @@ def test_water_that_the_hull_took_up_is_told(tmp_path):
     assert found.effect == "shallow-water"
     assert found.share > 0.9
     assert found.next_effect == "loading"  # whose forms, bent, leave hardly more: the noise decides
-    assert "one cause alone removes" in found.sentence
-    (depth,) = re.findall(r"If so: the ship sailed in shallow water, as if ([0-9.]+) m deep\.", found.sentence)
+    assert "that alone removes" in found.why
+    (depth,) = re.findall(r"for a cause: the ship sailed in shallow water, as if ([0-9.]+) m deep\.", found.sentence)
     assert float(depth) == pytest.approx(9.0, abs=0.1)
 
 
@@ -50,9 +50,9 @@ def test_other_forms_of_the_cause_are_told_beside_it():
     loaded = "The ship was loaded otherwise than the profile says"
     forms = (f"{loaded}: 0.8 times the displacement", "The water was shallow")
     found = Instead("loading", f"{loaded}: a trim by the stern of 0.4 of the draught", 0.99, "", 0.0, forms)
-    assert found.sentence.endswith(
-        "If so: the ship was loaded otherwise than the profile says: a trim by the stern of 0.4 of the draught; "
-        "or 0.8 times the displacement; or the water was shallow."
+    assert found.sentence == (
+        "Re-tuning may stand for a cause: the ship was loaded otherwise than the profile says: "
+        "a trim by the stern of 0.4 of the draught; or 0.8 times the displacement; or the water was shallow."
     )
     assert found.to_dict()["forms"] == list(forms)
 
