@@ -133,6 +133,8 @@ class Belief:
         terms = [one for one in brought if not one.apart]
         if self.more or len(terms) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
+        if ended := list(dict.fromkeys(one.tag for one in self.causes if one.at_ends)):
+            return f"the size of {listed(ended)} is at the end of its range"
         if self._faint and not self._told_by_one_log:
             return "all that they remove is little beside noise, and other sums would"
         if self.rest > BESIDE and not self.explains_all:

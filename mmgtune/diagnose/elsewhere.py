@@ -6,14 +6,15 @@ run is then a test.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..fitting.box import AT, base_of, group_of
-from ..fitting.least_squares import solve
+from ..fitting.least_squares import LeastSquaresResult, solve, squares_by_case
 from ..fitting.problem import FitProblem
 from ..model import Model
 from ..objective import cases_of
@@ -23,6 +24,9 @@ from .workbench import LOOSE, Point, Workbench
 
 FIRST = 0.4
 """Share of a held-out run on which run-specific parameters are estimated."""
+
+BESIDE = 1.5
+"""Spreads beside the mean at which fits of run-specific parameters also begin."""
 
 
 def unknown(point: Point, trials: Sequence[Trial]) -> tuple[str, ...]:
@@ -69,6 +73,39 @@ def estimated_there(bench: Workbench, point: Point, trials: Sequence[Trial]) -> 
         if group_of(name):
             known.setdefault(spread_key(name), []).append(float(z))
     mean = np.array([np.mean(known[spread_key(name)]) for name in names])
-    expected = np.diag([1.0 / point.spreads[spread_key(name)] for name in names])
-    (end,) = solve(problem, mean[:, None], max_iterations=20, whiten=noise.apply, beliefs=(expected, mean))
-    return replace(point, names=(*point.names, *names), unit=np.concatenate([point.unit, end.unit]))
+    spread = np.array([point.spreads[spread_key(name)] for name in names])
+    starts = np.clip(mean[:, None] + spread[:, None] * _around(names), 0.0, 1.0)
+    beliefs = np.diag(1.0 / spread), mean
+    ends = solve(problem, starts, max_iterations=20, whiten=noise.apply, beliefs=beliefs)
+    unit = _best_of_each(problem, names, ends, noise.apply, beliefs)
+    return replace(point, names=(*point.names, *names), unit=np.concatenate([point.unit, unit]))
+
+
+def _around(names: Sequence[str]) -> FloatArray:
+    """(n_names, n_starts) where fits of values of runs begin, in spreads from the mean: there, and beside it in every
+    direction, as a wind that only some runs had is far from the mean of all and a fit may stay on this side of calm."""
+    bases = list(dict.fromkeys(base_of(name) for name in names))
+    signs = np.array([np.zeros(len(bases)), *product((-BESIDE, BESIDE), repeat=len(bases))])
+    return np.asarray(signs[:, [bases.index(base_of(name)) for name in names]].T)
+
+
+def _best_of_each(
+    problem: FitProblem,
+    names: Sequence[str],
+    ends: Sequence[LeastSquaresResult],
+    whiten: Callable[[FloatArray], FloatArray],
+    beliefs: tuple[FloatArray, FloatArray],
+) -> FloatArray:
+    """(n_names,) the values of each group from the fit that ended best on its runs: no two groups share any."""
+    rows, centre = beliefs
+    unit = np.array([end.unit for end in ends])
+    left = np.array([squares_by_case(problem, end.unit, end.offsets, whiten) for end in ends])
+    left += np.array([np.sum(problem.prior * end.offsets**2, axis=1) for end in ends])
+    unlike = np.array([(rows @ (one - centre)) ** 2 for one in unit])
+    best: FloatArray = unit[0].copy()
+    for group in dict.fromkeys(map(group_of, names)):
+        own = [k for k, name in enumerate(names) if group_of(name) == group]
+        cases = [k for k, labels in enumerate(problem.groups) if group in labels]
+        cost = left[:, cases].sum(axis=1) + unlike[:, own].sum(axis=1)
+        best[own] = unit[int(np.argmin(np.nan_to_num(cost, nan=np.inf))), own]
+    return best

@@ -43,8 +43,8 @@ def diagnosis(result: Diagnosis) -> View:
 def validation(result: Validation) -> View:
     """A row a model and trial: J and L_MSE."""
     rows: list[Row] = []
+    several = any(model.predictor.n_members > 1 for model in result.profiles)
     for model in result.profiles:
-        several = model.predictor.n_members > 1
         for one in model.scores:
             member = {"member": one.member + 1} if several else {}
             rows.append(

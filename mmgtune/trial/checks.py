@@ -11,8 +11,9 @@ from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .model import Trial
 from .motion_checks import motion_findings
-from .saturation import saturation_findings
+from .saturation import saturation_findings, yaw_rate_end
 from .schema import OPTIONAL, known_column
+from .standing import standing_findings
 from .surroundings_checks import surroundings_findings
 from .swell import swell_findings
 from .unusable import unusable
@@ -36,9 +37,13 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
     with np.errstate(all="ignore"):
         motion = motion_findings(trial, where)
         contradicted = any(one.code == "contradicted" for one in motion)
+        ended = saturation_findings(trial, where)
+        if yaw_rate_end(trial) is not None:  # which is why it does not integrate to the heading
+            motion = [one for one in motion if one.code != "yaw-rate"]
         found = [
+            *standing_findings(trial, where),
+            *ended,
             *motion,
-            *saturation_findings(trial, where),
             *swell_findings(trial, where, L_pp),
             *control_findings(trial, where),
             *cross_findings(trial, where, L_pp, contradicted),

@@ -1,10 +1,12 @@
-"""Sensors at the end of their range: a channel that is noisy, and stands still at its largest or smallest value."""
+"""Sensors at the end of their range: a channel that is noisy, and stands still at its largest or smallest value; a yaw
+rate that goes no further, however fast the heading turns."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..arrays import FloatArray
+from ..units import DEG
 from .finding import Finding
 from .model import Trial
 from .motion_checks import longest_run
@@ -22,6 +24,15 @@ ELSEWHERE = 0.05
 NOISY = -0.3
 """Correlation of neighbouring second differences up to which a channel is noisy: -2/3 for white noise, near 1 for a
 smooth one, which may stand still for good."""
+
+STRETCHES, SHORTEST = 60, 5
+"""Stretches that a record is cut into to hold its yaw rate against its heading, and samples that one has at least."""
+
+BEYOND, SO_MANY = 1.1, 4
+"""How many times as fast as its log the ship turns where that has ended, and stretches in which she does."""
+
+BETTER = 0.35
+"""Error of a yaw rate with an end, as a share of that of one with another scale, up to which it has an end."""
 
 
 def saturation_findings(trial: Trial, where: str) -> list[Finding]:
@@ -42,7 +53,47 @@ def saturation_findings(trial: Trial, where: str) -> list[Finding]:
                         "saturated",
                     )
                 )
-    return found
+    said = any("column 'r'" in one.where for one in found)
+    return found if said else [*found, *_of_yaw_rate(trial, where)]
+
+
+def _of_yaw_rate(trial: Trial, where: str) -> list[Finding]:
+    """That the yaw rate follows the heading up to a rate and no further, noise of the sensor or not."""
+    end = yaw_rate_end(trial)
+    if end is None:
+        return []
+    return [
+        Finding(
+            "warning",
+            f"the yaw rate ends at {end / DEG:.3g} deg/s ({end / DEG * 60.0:.3g} deg/min)",
+            f"{where}, columns 'psi' and 'r'",
+            "it follows the heading up to there, and stays there where the ship turns faster: the gyro, or what logs "
+            "it, is at the end of its range",
+            "mark the yaw rate beyond as NaN: it counts in no comparison then",
+            "saturated",
+        )
+    ]
+
+
+def yaw_rate_end(trial: Trial) -> float | None:
+    """Yaw rate [rad/s] beyond which that of the log does not go, though the heading turns faster; None for none."""
+    n = max(SHORTEST, trial.n_samples // STRETCHES)
+    first = np.arange(0, trial.n_samples - n, n)
+    lasts = trial.t[first + n] - trial.t[first]
+    turned = (trial.psi[first + n] - trial.psi[first]) / lasts
+    steps = 0.5 * (trial.r[1:] + trial.r[:-1]) * np.diff(trial.t)
+    logged = np.array([steps[k : k + n].sum() for k in first]) / lasts
+    known = np.isfinite(turned) & np.isfinite(logged)
+    turned, logged = turned[known], logged[known]
+    if len(turned) < 2 * SO_MANY or not np.any(turned) or not np.any(logged):
+        return None
+    scale = float(turned @ logged) / float(turned @ turned)
+    ends = np.linspace(0.5, 1.05, 56) * np.abs(logged).max()
+    left = np.sum((logged - np.clip(turned, -ends[:, None], ends[:, None])) ** 2, axis=1)
+    end = float(ends[int(np.argmin(left))])
+    scaled = float(np.sum((logged - scale * turned) ** 2))
+    ended = np.sum(np.abs(turned) > BEYOND * end) >= SO_MANY and float(left.min()) < BETTER**2 * scaled
+    return end if ended else None
 
 
 def _at_the_end(values: FloatArray) -> int:

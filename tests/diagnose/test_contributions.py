@@ -588,6 +588,7 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, removed=0.6), ""),
         (sum_of(CLEAR, at_ends=True, left=1.2), "at the end of its range"),
         (sum_of(CLEAR, at_ends=True, left=0.4), ""),
+        (sum_of(CLEAR, CLEAR, at_ends=True, explains_all=True), "at the end of its range"),  # a rudder that saturates
         (sum_of(CLEAR, left=1.2), ""),
         (sum_of(CLEAR, removed=-0.16), ""),
         (sum_of(CLEAR, remains=True), ""),

@@ -60,3 +60,16 @@ def test_a_filtered_channel_held_for_a_moment_is_none():
     u = trial.u.copy()
     u[100:104] = u.max() + 0.01
     assert not told(replace(trial, u=u))
+
+
+def noisy(values, size):
+    return values + size * np.random.default_rng(3).standard_normal(len(values))
+
+
+def test_a_yaw_rate_that_ends_below_noise_is_told():
+    trial = SUZAKU["turn_p35"]
+    end = 45.0 / 60.0 * DEG
+    (found,) = told(replace(trial, r=noisy(np.clip(trial.r, -end, end), 0.03 * DEG)))
+    assert found.what.startswith("the yaw rate ends at 0.7")
+    assert not [one for one in check_trial(replace(trial, r=np.clip(trial.r, -end, end))) if one.code == "yaw-rate"]
+    assert not told(replace(trial, r=0.8 * trial.r))  # a scale is no end
