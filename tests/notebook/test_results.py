@@ -14,7 +14,9 @@ import pytest
 import mmgtune
 from mmgtune.errors import OptionError, TrialError
 from mmgtune.fleet import FleetRun
+from mmgtune.model import Model
 from mmgtune.notebook.kinds import KINDS
+from mmgtune.predictor import as_predictor
 from mmgtune.trial.index_trial import IndexTrial, Stated
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'&amp;\u202e\x9b31m$x_1$"
@@ -267,3 +269,18 @@ def test_each_kind_is_a_class_that_can_be_shown():
 def test_ids_may_stand_in_a_list_and_a_channel_alone(trials):
     assert len(trials.plot.tracks(["turn_p35", "turn_m10"])) == 2
     assert len(trials.plot.histories("turn_p35", "psi")) == 1
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_models_with_and_without_members_share_their_columns(first):
+    trial = mmgtune.load_trials("suzaku")["turn_p35"]
+    model = Model(mmgtune.load_profile("suzaku"))
+    twice = as_predictor(model, theta=np.repeat(model.matrix(), 2, axis=1))
+    several = [("two", twice), ("one", model)]
+    result = mmgtune.validate(dict([several[first], several[1 - first]]), [trial])
+    table = result.to_frame()
+    assert list(table["member"]) == ([1, 2, 1] if first == 0 else [1, 1, 2])
+    lines = [line for line in result.summary().splitlines() if trial.id in line]
+    assert len(lines) == 3
+    assert all(len(line.split()) == 6 for line in lines)
+    assert ">member<" in result._repr_html_()
