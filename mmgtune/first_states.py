@@ -59,10 +59,10 @@ def estimated(predictor: Predictor, trials: Sequence[Trial], objective: Objectiv
 
     J and what offsets cost (``prior_weight``) fall together, by Gauss-Newton steps, each trial keeping the best it
     met, beginning with none.  Several members share the offsets: there was one state, whatever is made of it.  A trial
-    on which any of them diverges keeps none.
+    on which any of them diverges keeps none.  Raises OptionError where gaps leave a trial without a sample to compare.
     """
     sigma = deviations(trials, np.array([objective.scales[name] for name in STATES]))
-    weights = [objective.weight(trial) for trial in trials]
+    weights = weights_of(trials, objective)
     prior = np.array([prior_weight(own[None], one[None])[0] for own, one in zip(sigma, weights, strict=True)])
     best, least = np.zeros_like(sigma), np.full(len(trials), np.inf)
     tried, going = best.copy(), np.arange(len(trials))

@@ -159,7 +159,7 @@ def validate(
         if own and data.ship and data.ship != own:
             notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]
         offsets = None
-        if options.initial == "estimated":
+        if pieces and options.initial == "estimated":
             offsets = estimated(predictor, pieces, make_objective(predictor.L_pp))
         scores = tuple(score(predictor, pieces, sigma, offsets=offsets)) if pieces else ()
         if offsets is None:

@@ -14,8 +14,10 @@ from mmgtune.fitting.least_squares import fit_offsets
 from mmgtune.fitting.setting import make_problem
 from mmgtune.objective import make_objective
 from mmgtune.options import FitOptions, ValidateOptions, VoyageOptions
+from mmgtune.options.tuning import INITIAL
 from mmgtune.predictor import Prediction, as_predictor
 from mmgtune.profile import with_values
+from mmgtune.trial.index_trial import IndexTrial, Stated
 from mmgtune.trial.schema import ATTRIBUTES
 from mmgtune.validating import validate
 from mmgtune.voyages import validate_voyages
@@ -151,6 +153,20 @@ def test_the_command_says_how_runs_begin_and_draws_them_so(tmp_path):
     drawn = pd.read_parquet(tmp_path / "scores" / "motions.parquet").groupby(["trial", "which"]).first()
     off = drawn.xs("suzaku", level="which")[["x", "y"]] - drawn.xs("measured", level="which")[["x", "y"]]
     assert (off.abs() > 1e-3).all(axis=None)
+
+
+def test_indices_that_are_stated_alone_have_no_first_state():
+    delivery = IndexTrial("delivery", "suzaku", "turning", 0.6, None, None, {"advance": Stated(240.0, 12.0)})
+    measured, freed = (validate("suzaku", [delivery], ValidateOptions(initial=one)) for one in INITIAL)
+    assert freed.profiles[0].offsets is None
+    assert freed.profiles[0].stated == measured.profiles[0].stated
+
+
+def test_a_trial_without_a_sample_to_compare_is_told(suzaku, sailed):
+    (trial, *_) = sailed.trials.values()
+    gaps = {name: np.where(np.arange(trial.n_samples) > 0, np.nan, getattr(trial, name)) for name in ("x", "y", "psi")}
+    with pytest.raises(OptionError, match="has no sample to compare with"):
+        estimated(as_predictor(suzaku), [replace(trial, **gaps)], make_objective(suzaku.L_pp))
 
 
 def test_first_states_of_voyages_are_not_estimated(tmp_path):
