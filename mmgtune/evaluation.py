@@ -224,10 +224,7 @@ def evaluate(
     """
     predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
     must_be_a(objective, (Objective, NoneType), "objective")
-    several = some_of(trials)
-    if offsets is not None:
-        offsets = sized(offsets, "offsets", (len(several), len(STATES)), "each trial has its own first state")
-    return tuple(records(predictor, several, objective, offsets=offsets))
+    return tuple(records(predictor, some_of(trials), objective, offsets=offsets))
 
 
 def records(
@@ -238,6 +235,8 @@ def records(
     offsets: FloatArray | None = None,
 ) -> Iterator[TrialRecord]:
     """As ``evaluate``, one record after the other: who keeps numbers only never holds the states of all trials."""
+    if offsets is not None:
+        offsets = sized(offsets, "offsets", (len(trials), len(STATES)), "each trial has its own first state")
     chosen = make_objective(predictor.L_pp) if objective is None else objective
     about: Measured | None = None
     for k, motion in enumerate(motions(predictor, trials, offsets)):

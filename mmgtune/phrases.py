@@ -10,6 +10,11 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+def small(text: str) -> str:
+    """A sentence as it goes on behind a colon."""
+    return text[:1].lower() + text[1:]
+
+
 def counted(amount: int, noun: str, plural: str = "") -> str:
     """A number with its noun: "1 trial", "8 trials"."""
     return f"{amount} {noun if amount == 1 else plural or noun + 's'}"

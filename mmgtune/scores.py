@@ -18,7 +18,7 @@ from .evaluation import TrialRecord, records
 from .given import ShipGiven, TrialsGiven, some_of
 from .limits import as_float, is_real
 from .model import Model
-from .motions import begun, sized
+from .motions import begun
 from .networks import named_ship
 from .objective import spread, varying
 from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, predicted
@@ -145,8 +145,6 @@ def score(
     predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
     several = some_of(trials)
     sigma = varying(spread(several), "trials", "give sigma") if sigma is None else scales_of(sigma)
-    if offsets is not None:
-        offsets = sized(offsets, "offsets", (len(several), len(STATES)), "each trial has its own first state")
     return [score_of(record, sigma) for record in records(predictor, several, offsets=offsets)]
 
 

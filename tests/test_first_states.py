@@ -150,6 +150,8 @@ def test_the_command_says_how_runs_begin_and_draws_them_so(tmp_path):
     assert "rk4, first states estimated" in done.out
     page = (tmp_path / "scores" / "report.html").read_text(encoding="utf-8")
     assert "from a state within the noise of the first measured one" in page
+    run("validate", "suzaku", "suzaku", "--initial", "estimated", "--restart", "60", "--out", "windows", cwd=tmp_path)
+    assert "Over 60 s from an estimated state" in (tmp_path / "windows" / "report.html").read_text(encoding="utf-8")
     drawn = pd.read_parquet(tmp_path / "scores" / "motions.parquet").groupby(["trial", "which"]).first()
     off = drawn.xs("suzaku", level="which")[["x", "y"]] - drawn.xs("measured", level="which")[["x", "y"]]
     assert (off.abs() > 1e-3).all(axis=None)

@@ -13,6 +13,7 @@ from typing import Any
 import typer
 
 from ..errors import Problem, among, near_to
+from ..phrases import small
 from ..units import with_point
 
 Mistyped: type[Exception] = next(one for one in typer.BadParameter.__mro__ if one.__name__ == "UsageError")
@@ -68,9 +69,7 @@ def problem_of(error: Any) -> Problem | None:
         fix = f"write {as_options(extra[1].split(), ctx) or example}"
         many = "is one word too many" if len(extra[1].split()) == 1 else "are words too many"
         return Problem(f"'{extra[1]}' {many}", path, why, fix)
-    return Problem(
-        message[:1].lower() + message[1:], path, "the command line ends or goes on elsewhere", f"write {example}"
-    )
+    return Problem(small(message), path, "the command line ends or goes on elsewhere", f"write {example}")
 
 
 def as_options(words: list[str], ctx: Any) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 from ..displayed import Brief
 from ..documents import finite
 from ..effects import Effect, SensorEffect
+from ..phrases import small
 from .by_run import ByRun
 from .contributions import Contribution
 from .intervals import Estimate
@@ -129,13 +130,13 @@ class Trace:
         """What it is, and why it is no more than that."""
         if self.alike:
             told = f"too little to be told: {' or '.join((self.cause.tag, *self.alike))}, or coefficients that are off"
-            return f"There is a trace of one more, {told}. If the first: {self.words[0].lower()}{self.words[1:]}."
+            return f"There is a trace of one more, {told}. If the first: {small(self.words)}."
         why = "it changes nothing that would be noticed"
         if self.contribution.like_hull:
             why = "a hull further off than believed would explain it as well"
         elif self.contribution.harmful:
             why = "held-out trials are told no better with it"
-        return f"There is a trace of one more, left out as {why}: {self.words[0].lower()}{self.words[1:]}."
+        return f"There is a trace of one more, left out as {why}: {small(self.words)}."
 
     @property
     def words(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ..phrases import in_percent
+from ..phrases import in_percent, small
 from .belief import Belief
 from .causes import Cause
 
@@ -66,7 +66,7 @@ class Leading:
     def sentence(self) -> str:
         """How large it would be."""
         share, words = in_percent(min(self.explained, self.held_out)), self.cause.sentence
-        return f"Most of it, {share}, would be {self.cause.tag}: {words[0].lower()}{words[1:]}."
+        return f"Most of it, {share}, would be {self.cause.tag}: {small(words)}."
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

@@ -83,10 +83,17 @@ def estimated_there(bench: Workbench, point: Point, trials: Sequence[Trial]) -> 
 
 def _around(names: Sequence[str]) -> FloatArray:
     """(n_names, n_starts) where fits of values of runs begin, in spreads from the mean: there, and beside it in every
-    direction, as a wind that only some runs had is far from the mean of all and a fit may stay on this side of calm."""
+    direction, as a wind that only some runs had is far from the mean of all and a fit may stay on this side of calm.
+
+    Two parameters of each run at a time, as directions have two: all at once would be twice as many starts for each.
+    """
     bases = list(dict.fromkeys(base_of(name) for name in names))
-    signs = np.array([np.zeros(len(bases)), *product((-BESIDE, BESIDE), repeat=len(bases))])
-    return np.asarray(signs[:, [bases.index(base_of(name)) for name in names]].T)
+    starts = [np.zeros(len(bases))]
+    for pair in (slice(k, k + 2) for k in range(0, len(bases), 2)):
+        for signs in product((-BESIDE, BESIDE), repeat=len(bases[pair])):
+            starts.append(np.zeros(len(bases)))
+            starts[-1][pair] = signs
+    return np.array(starts)[:, [bases.index(base_of(name)) for name in names]].T
 
 
 def _best_of_each(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..fitting.least_squares import fit_offsets
-from ..phrases import in_percent
+from ..phrases import in_percent, small
 from .base_fit import PRECISE
 from .hypotheses import Hypothesis
 from .intervals import Estimate
@@ -63,7 +63,7 @@ class Instead:
     @property
     def sentence(self) -> str:
         """What re-tuning may stand for."""
-        words = "; or ".join([_small(self.words), *(_told_apart(form, self.words) for form in self.forms)])
+        words = "; or ".join([small(self.words), *(_told_apart(form, self.words) for form in self.forms)])
         return f"Re-tuning may stand for a cause: {words}."
 
     @property
@@ -144,15 +144,10 @@ def _in_words(bench: Workbench, fit: Refit) -> str:
     return hypothesis.effect.sentence(parameters_in_words(hypothesis.effect, own))
 
 
-def _small(sentence: str) -> str:
-    """A sentence as it goes on behind a colon."""
-    return sentence[0].lower() + sentence[1:]
-
-
 def _told_apart(sentence: str, first: str) -> str:
     """A sentence behind one that begins alike: only what stands behind the colon then."""
     head, colon, rest = sentence.partition(": ")
-    return rest if colon and first.startswith(head + colon) else _small(sentence)
+    return rest if colon and first.startswith(head + colon) else small(sentence)
 
 
 def _untuned(bench: Workbench, tuned: Point) -> Point:

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..displayed import Brief
+from ..first_states import LITTLE, ROUNDS
 from .bounded import bounded_step
 from .journal import remembered
 from .problem import FitProblem
@@ -45,9 +46,6 @@ way."""
 
 FIRST_STEPS = 1
 """Steps before a start is given up for what the linear problem promises: far from its end that says little."""
-
-OFFSET_ITERATIONS = 12
-"""Most iterations of the initial states alone, with the targets held."""
 
 SHARE_AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
@@ -162,7 +160,7 @@ def fit_offsets(
     """
     best = np.zeros((len(problem.cases), 6))
     value = squares_by_case(problem, unit, best, whiten)
-    for _ in range(OFFSET_ITERATIONS):
+    for _ in range(ROUNDS):
         residuals, slopes = problem.offset_slopes(unit, best)
         residuals, slopes = flat_where_lost(residuals), flat_where_lost(slopes)
         if whiten is not None:
@@ -170,7 +168,7 @@ def fit_offsets(
         linear = Quadratic(problem, best, residuals, np.empty((len(residuals), 0)), slopes)
         tried = linear.offsets(np.empty(0))
         found = squares_by_case(problem, unit, tried, whiten) + np.sum(problem.prior * tried**2, axis=1)
-        better = found < value * (1.0 - 1e-9)
+        better = found < value * (1.0 - LITTLE)
         best[better], value[better] = tried[better], found[better]
         if not better.any():
             break

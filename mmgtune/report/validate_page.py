@@ -88,9 +88,9 @@ def _verdict(record: ValidationRecord) -> str:
     if best is None:
         return "Every model diverged on some trial." if record.scored else "Models against what is stated."
     place, heading = _errors(record, best)
-    data = record.data
-    window = number(data["window_s"])
-    over = f"Over {shown(window, 3)} s from {_beginning(data)}" if window else "Over whole trials"
+    window = number(record.data["window_s"])
+    begun = "an estimated state" if _estimated(record.data) else "a measured state"
+    over = f"Over {shown(window, 3)} s from {begun}" if window else "Over whole trials"
     off = f"{shown(place, 3)} m and {shown(heading, 2)}° off (root mean square over all samples)"
     if len(record.models) == 1:
         return f"{over} {best['called']} is {off}."
@@ -147,9 +147,14 @@ def _motions(record: ValidationRecord) -> Section | None:
     return Section("motions", "Tracks and time histories", (block,))
 
 
+def _estimated(data: Mapping[str, Any]) -> bool:
+    """Whether simulations begin with estimated states."""
+    return data.get("initial") == "estimated"
+
+
 def _beginning(data: Mapping[str, Any]) -> str:
     """What each simulation begins with."""
-    if data.get("initial") == "estimated":
+    if _estimated(data):
         return "a state within the noise of the first measured one, from which it follows best,"
     return "the first measured state"
 

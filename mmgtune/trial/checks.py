@@ -37,12 +37,12 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
     with np.errstate(all="ignore"):
         motion = motion_findings(trial, where)
         contradicted = any(one.code == "contradicted" for one in motion)
-        ended = saturation_findings(trial, where)
-        if yaw_rate_end(trial) is not None:  # which is why it does not integrate to the heading
+        end = yaw_rate_end(trial)
+        if end is not None:  # which is why it does not integrate to the heading
             motion = [one for one in motion if one.code != "yaw-rate"]
         found = [
             *standing_findings(trial, where),
-            *ended,
+            *saturation_findings(trial, where, end),
             *motion,
             *swell_findings(trial, where, L_pp),
             *control_findings(trial, where),

@@ -35,12 +35,16 @@ BETTER = 0.35
 """Error of a yaw rate with an end, as a share of that of one with another scale, up to which it has an end."""
 
 
-def saturation_findings(trial: Trial, where: str) -> list[Finding]:
-    """That a channel of the motion stands at the end of its range."""
-    found = []
+def saturation_findings(trial: Trial, where: str, end: float | None) -> list[Finding]:
+    """That a channel of the motion stands at the end of its range.
+
+    end  of the yaw rate, see ``yaw_rate_end``; told where that does not stand still there
+    """
+    found, stand = [], set()
     for name in CHANNELS:
         for word, values in (("largest", trial.columns[name]), ("smallest", -trial.columns[name])):
             if n := _at_the_end(values):
+                stand.add(name)
                 value = float(np.nanmax(values)) * (1.0 if word == "largest" else -1.0)
                 found.append(
                     Finding(
@@ -53,30 +57,24 @@ def saturation_findings(trial: Trial, where: str) -> list[Finding]:
                         "saturated",
                     )
                 )
-    said = any("column 'r'" in one.where for one in found)
-    return found if said else [*found, *_of_yaw_rate(trial, where)]
-
-
-def _of_yaw_rate(trial: Trial, where: str) -> list[Finding]:
-    """That the yaw rate follows the heading up to a rate and no further, noise of the sensor or not."""
-    end = yaw_rate_end(trial)
-    if end is None:
-        return []
-    return [
-        Finding(
-            "warning",
-            f"the yaw rate ends at {end / DEG:.3g} deg/s ({end / DEG * 60.0:.3g} deg/min)",
-            f"{where}, columns 'psi' and 'r'",
-            "it follows the heading up to there, and stays there where the ship turns faster: the gyro, or what logs "
-            "it, is at the end of its range",
-            "mark the yaw rate beyond as NaN: it counts in no comparison then",
-            "saturated",
+    if end is not None and "r" not in stand:
+        found.append(
+            Finding(
+                "warning",
+                f"the yaw rate ends at {end / DEG:.3g} deg/s ({end / DEG * 60.0:.3g} deg/min)",
+                f"{where}, columns 'psi' and 'r'",
+                "it follows the heading up to there, and stays there where the ship turns faster: the gyro, or what "
+                "logs it, is at the end of its range",
+                "mark the yaw rate beyond as NaN: it counts in no comparison then",
+                "saturated",
+            )
         )
-    ]
+    return found
 
 
 def yaw_rate_end(trial: Trial) -> float | None:
-    """Yaw rate [rad/s] beyond which that of the log does not go, though the heading turns faster; None for none."""
+    """Yaw rate [rad/s] beyond which that of the log does not go, though the heading turns faster, noise of the sensor
+    or not; None for none."""
     n = max(SHORTEST, trial.n_samples // STRETCHES)
     first = np.arange(0, trial.n_samples - n, n)
     lasts = trial.t[first + n] - trial.t[first]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..phrases import listed
 from .finding import Finding
 from .model import Trial
@@ -19,6 +19,9 @@ LONGEST_STEP = 20.0
 
 FEWEST = 8
 """Updates that show how often a log is updated."""
+
+HARDLY = 0.02
+"""Share of the samples between updates of the positions at which a channel that is held with them may change."""
 
 
 def standing_findings(trial: Trial, where: str) -> list[Finding]:
@@ -70,8 +73,8 @@ def _held(trial: Trial, where: str) -> list[Finding]:
     ]
 
 
-def _stands(values: FloatArray, updated: np.ndarray, asked: np.ndarray) -> bool:
-    """Whether a channel (n_samples,) stands still wherever the positions (n_samples - 1,) do."""
+def _stands(values: FloatArray, updated: BoolArray, asked: BoolArray) -> bool:
+    """Whether a channel (n_samples,) stands still wherever the positions do; updated, asked (n_samples - 1,)."""
     still = asked & ~updated
     changed = np.diff(values)[still] != 0.0
-    return bool(still.any()) and float(np.mean(changed)) < 0.02
+    return bool(still.any()) and float(np.mean(changed)) < HARDLY

@@ -17,6 +17,14 @@ def test_fits_begin_at_the_mean_and_beside_it_in_every_direction():
     np.testing.assert_array_equal(begun[:2], begun[2:])  # all runs at once, of which none changes another
 
 
+def test_starts_grow_with_the_parameters_and_no_faster():
+    names = [f"effects.current.{name}@trial:a" for name in ("north", "east", "north_rate", "east_rate", "one")]
+    begun = elsewhere._around(names)
+    assert begun.shape == (5, 1 + 4 + 4 + 2)
+    moved = {tuple(np.flatnonzero(column)) for column in begun.T}
+    assert moved == {(), (0, 1), (2, 3), (4,)}
+
+
 def test_each_run_has_the_end_that_is_best_for_it(monkeypatch):
     costs = {0.1: [9.0, 1.0], 0.2: [2.0, 5.0], 0.3: [np.nan, 3.0]}  # of runs a and b
     monkeypatch.setattr(elsewhere, "squares_by_case", lambda problem, unit, offsets, whiten: np.array(costs[unit[0]]))
