@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ... import units
 from ...arrays import FloatArray
 from ...units import DEG, KNOT
 from .sampling import Sample
@@ -27,6 +28,13 @@ SLOWLY = 0.1
 """Share of its largest rate up to which a heading counts as steady."""
 TURNED = 2e-4
 """Circular variance of a course, of 1 degree, below which nothing is told by it."""
+
+CLOSELY = 0.9
+"""Share of the course's changes that the heading is to explain where a name says that a column is no position."""
+WIDELY = 0.25
+"""Circular variance of a heading from which it has turned far, of about half a turn in all."""
+UNLIKE = 2.5
+"""Factor between speeds to the north and to the east from which two columns are not both positions in one unit."""
 
 
 @dataclass(frozen=True)
@@ -67,12 +75,12 @@ class Track:
 
 
 def tracks(
-    windows: Windows, sample: Sample, said: Sequence[str], among: Sequence[int]
+    windows: Windows, sample: Sample, said: Sequence[str], units_said: Sequence[str], among: Sequence[int]
 ) -> dict[Track, tuple[float, str]]:
     """Readings of a log with what speaks for each: a score up to about 1.5, and in words.
 
-    said   (n_columns,) quantities that names say, "" where they say none
-    among  columns to look at
+    said, units_said  (n_columns,) what names say: a quantity, a unit; "" where they say none
+    among             columns to look at
     """
     columns = windows.columns
     slopes = {k: windows.slope(columns[k]) for k in among}
@@ -81,8 +89,10 @@ def tracks(
     rates = _rates(moving, slopes, means)
     whole = {a for a, _ in rates}
     found: dict[Track, tuple[float, str]] = {}
-    for i, j in itertools.combinations(moving, 2):
-        for geographic in _kinds(i, j, sample, slopes, columns):
+    # Revolutions, speeds and rates follow a turning ship too, well enough to pass for the position that is missing.
+    places = [k for k in moving if not _is(units_said[k], *_NO_PLACES)]
+    for i, j in itertools.combinations(places, 2):
+        for geographic in _kinds(i, j, sample, slopes, columns, units_said):
             a, b = slopes[i], slopes[j]
             narrow = float(np.cos(np.nanmedian(columns[i]) * DEG)) if geographic else 1.0
             b = b * narrow
@@ -98,6 +108,13 @@ def tracks(
 
 
 _PLACES = ("x", "y", "latitude", "longitude")
+_NO_PLACES = ("1/s", "m/s", "rad/s")
+"""Units of no position."""
+
+
+def _is(unit: str, *kinds: str) -> bool:
+    """Whether a unit, "" where none is said, is one of what these are units of."""
+    return any(unit in units.factors(kind) for kind in kinds)
 
 
 def _derived(k: int, pair: tuple[int, int], rates: Mapping[tuple[int, int], float]) -> bool:
@@ -131,7 +148,12 @@ def _rates(
 
 
 def _kinds(
-    i: int, j: int, sample: Sample, slopes: dict[int, FloatArray], columns: Sequence[FloatArray]
+    i: int,
+    j: int,
+    sample: Sample,
+    slopes: dict[int, FloatArray],
+    columns: Sequence[FloatArray],
+    units_said: Sequence[str],
 ) -> tuple[bool, ...]:
     """Whether two columns may be metres (False), and degrees of latitude and longitude (True)."""
     written = {i, j} & sample.written
@@ -140,11 +162,12 @@ def _kinds(
     with np.errstate(over="ignore", invalid="ignore"):
         speed = float(np.nanpercentile(np.hypot(slopes[i], slopes[j]), 80.0))
     kinds = []
-    if not written and SPEEDS[0] < speed < SPEEDS[1]:
+    angles, lengths = (any(_is(units_said[k], kind) for k in (i, j)) for kind in ("rad", "m"))
+    if not written and not angles and SPEEDS[0] < speed < SPEEDS[1]:
         kinds.append(False)
     largest = [float(np.nanmax(np.abs(columns[k]))) for k in (i, j)]
     degrees = max(largest) <= 360.0 and min(largest) <= 90.0 and SPEEDS[0] < speed * METRES_PER_DEGREE < SPEEDS[1]
-    if degrees:
+    if degrees and not lengths:
         kinds.append(True)
     return tuple(kinds)
 
@@ -171,6 +194,7 @@ def _of_pair(
     spread = 1.0 - abs(course.mean())
     if spread < TURNED:
         return []
+    least = CLOSELY if any(said[k] not in (*_PLACES, "") for k in (i, j)) else 0.0
     found = []
     for k in moving:
         if k in (i, j):
@@ -189,13 +213,26 @@ def _of_pair(
             for sense in (1.0, -1.0):
                 off = course[known] * (heading.conj() if sense > 0 else heading)
                 told = 1.0 - (1.0 - abs(off.mean())) / spread
-                if told < 0.3:
+                if told < max(0.3, least) or not (geographic or _alike(a[used][known], b[used][known], psi[known])):
                     continue
                 ahead = float(np.angle(np.mean(off * _straight(slopes[k][used][known]))))
                 for track, cost in _readings(i, j, k, sense, ahead, geographic, degrees, windows, said):
                     words = f"the course follows it: {100.0 * told:.0f} % of the course's changes"
                     found.append((track, told - cost, words))
     return found
+
+
+def _alike(a: FloatArray, b: FloatArray, psi: FloatArray) -> bool:
+    """Whether two slopes (n_windows,) vary with a heading [rad] alike, as a ship sails as fast north as east.
+
+    Where she hardly turns this tells nothing.
+    """
+    if 1.0 - abs(np.exp(1j * psi).mean()) < WIDELY:
+        return True
+    with_heading = np.column_stack([np.cos(psi), np.sin(psi), np.ones(len(psi))])
+    parts = np.linalg.lstsq(with_heading, np.column_stack([a, b]), rcond=None)[0]
+    sizes = np.hypot(parts[0], parts[1])
+    return bool(sizes.max() < UNLIKE * sizes.min())
 
 
 def _straight(rates: FloatArray) -> FloatArray:

@@ -73,7 +73,7 @@ def _makes_no_sense(find: Finder, name: str) -> bool:
     have = set(find.guesses)
     named = {find.said[k] for k in find.numeric if k not in find.used} | have
     if name in ("x", "y"):
-        return "latitude" in have or not {"x", "y"} <= named
+        return bool({"latitude", "longitude"} & named)
     if name in ("latitude", "longitude"):
         return "x" in have or not {"latitude", "longitude"} <= named
     if name in ("u", "v", "sog", "cog") and find.looks:
@@ -135,5 +135,6 @@ def _asked(name: str) -> Guess:
     item = INPUTS.get(name)
     more = ', or value = "1.5 rps" where it is constant' if item is not None and item.unit == "1/s" else ""
     more = ', or value = "0 deg" where it is constant' if item is not None and item.unit == "rad" else more
-    question = f"{MARK} the name or number of the column that holds {meaning(name).split(',')[0]}{more}"
+    holds = meaning(name) if name in ("x", "y") else meaning(name).split(",")[0]
+    question = f"{MARK} the name or number of the column that holds {holds}{more}"
     return Guess(name, None, {"column": question}, ("no column was found to be it",), ASKED)

@@ -24,6 +24,9 @@ from .motions import courses, speeds, velocities, yaw_rates
 from .windows import Windows
 from .words import ORDER, OTHER, ROLL, TIME
 
+_OTHER_HALF = {"x": "y", "y": "x", "latitude": "longitude", "longitude": "latitude"}
+_HALF = {"x": "the position to the north", "y": "the position to the east"}
+_HALF |= {"latitude": "latitude", "longitude": "longitude"}
 _ANGLES_OF_ROBOTS = ("yaw", "theta")
 DRIFTS = 2.0 * DEG
 """Standard deviation of heading and course of each other from which a ship drifts in turns."""
@@ -67,8 +70,8 @@ def position_and_heading(find: Finder) -> None:
         find.unit = likely_units(find.first, find.clock)[0]
         time_unit(find)
         find.notes.append("the motion shows neither position nor heading: what follows is by names alone")
-        if not {"x", "y", "latitude", "longitude"} & set(find.said):
-            find.notes.append("no column is called a position, and a trial needs the track: have it exported too")
+        if lacking := _no_track(find):
+            find.notes.append(f"{lacking}, and a trial needs the track: have it exported too")
         return
     find.unit = motion.unit
     time_unit(find)
@@ -86,6 +89,18 @@ def position_and_heading(find: Finder) -> None:
         )
     _add_columns(find, track, _confidence(find, motion.scores, track, course), motion.words, led)
     _doubt_mirror_image(find, motion.scores, track)
+
+
+def _no_track(find: Finder) -> str:
+    """What is not there of a position by the names of the columns, "" where both halves of one are."""
+    halves = {name: [k for k, said in enumerate(find.said) if said == name] for name in _OTHER_HALF}
+    there = [name for name, columns in halves.items() if columns]
+    if not there:
+        return "no column is called a position"
+    if any(_OTHER_HALF[name] in there for name in there):
+        return ""
+    name = there[0]
+    return f"{find.shown(halves[name][0])} is called {_HALF[name]}, and no column {_HALF[_OTHER_HALF[name]]}"
 
 
 def _likeliest_motion(find: Finder) -> Motion | None:
@@ -118,7 +133,7 @@ def _motion_with(find: Finder, unit: str) -> Motion:
     for sample, w in zip(find.samples, windows, strict=True):
         if not w.enough:
             continue
-        for track, (score, word) in tracks(w, sample, find.said, among).items():
+        for track, (score, word) in tracks(w, sample, find.said, find.units_said, among).items():
             if find.said[track.psi] != "psi" and _against_its_name(find, track):
                 continue
             scores[track] += score
