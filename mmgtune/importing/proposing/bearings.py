@@ -34,7 +34,7 @@ CLOSELY = 0.9
 WIDELY = 0.25
 """Circular variance of a heading from which it has turned far, of about half a turn in all."""
 UNLIKE = 2.5
-"""Factor between speeds to the north and to the east from which two columns are not both positions in one unit."""
+"""Factor between speeds north and east from which two columns are not both positions in one unit."""
 
 
 @dataclass(frozen=True)
@@ -213,9 +213,11 @@ def _of_pair(
             for sense in (1.0, -1.0):
                 off = course[known] * (heading.conj() if sense > 0 else heading)
                 told = 1.0 - (1.0 - abs(off.mean())) / spread
-                if told < max(0.3, least) or not (geographic or _alike(a[used][known], b[used][known], psi[known])):
+                if told < max(0.3, least):
                     continue
                 ahead = float(np.angle(np.mean(off * _straight(slopes[k][used][known]))))
+                if not (geographic or _alike(a[used][known], b[used][known], sense * psi[known] + ahead)):
+                    continue
                 for track, cost in _readings(i, j, k, sense, ahead, geographic, degrees, windows, said):
                     words = f"the course follows it: {100.0 * told:.0f} % of the course's changes"
                     found.append((track, told - cost, words))
@@ -223,16 +225,15 @@ def _of_pair(
 
 
 def _alike(a: FloatArray, b: FloatArray, psi: FloatArray) -> bool:
-    """Whether two slopes (n_windows,) vary with a heading [rad] alike, as a ship sails as fast north as east.
+    """Whether two slopes (n_windows,) are parts of one speed along a heading [rad] that counts from one to the other.
 
-    Where she hardly turns this tells nothing.
+    a = U cos(psi) and b = U sin(psi) make a sin(psi) as large as b cos(psi), however the speed changes meanwhile.
+    Where a ship hardly turns this tells nothing.
     """
     if 1.0 - abs(np.exp(1j * psi).mean()) < WIDELY:
         return True
-    with_heading = np.column_stack([np.cos(psi), np.sin(psi), np.ones(len(psi))])
-    parts = np.linalg.lstsq(with_heading, np.column_stack([a, b]), rcond=None)[0]
-    sizes = np.hypot(parts[0], parts[1])
-    return bool(sizes.max() < UNLIKE * sizes.min())
+    one, other = np.linalg.norm(a * np.sin(psi)), np.linalg.norm(b * np.cos(psi))
+    return bool(max(one, other) < UNLIKE * min(one, other))
 
 
 def _straight(rates: FloatArray) -> FloatArray:
