@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..errors import LogError, Problem
 from .mapping import LogMap
+from .matlab import of_version_4
 from .text import binary, start_of
 from .workbook import OLD
 
@@ -51,6 +52,8 @@ def form_of(log: Path) -> str:
         raise LogError(Problem("the log is no text", str(log), why, fix))
     if content.startswith((b"MATLAB", b"\x89HDF")) or (content[126:128] in (b"IM", b"MI") and binary(content)):
         return "mat"
+    if binary(content) and (of_version_4(content) or log.suffix.lower() == ".mat"):
+        return "mat"  # where it is told why it cannot be read
     text = content.removeprefix(b"\xef\xbb\xbf")
     if re.match(rb"\s*[$!][A-Z]{4,},", text):
         return "nmea"

@@ -31,7 +31,7 @@ from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, hold_step, missing_between, on_grid, stretches
 from .jumps import cut_at_jumps
 from .mapping import LogMap
-from .matlab import read_matlab
+from .matlab_columns import read_matlab
 from .means import with_mean
 from .nmea import read_nmea
 from .parquet_log import read_parquet

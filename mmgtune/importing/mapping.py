@@ -147,7 +147,8 @@ class LogMap:
     name        file or preset it was read from
     some        maps of logs that differ, by the pattern of their names
     sheet       of a workbook, "" for its first that holds rows
-    variable    of a MATLAB file, a structure or a matrix that holds the columns; "" where they are variables themselves
+    variable    of a MATLAB file, a structure or a matrix that holds the columns, such as "log" or "data.run(2)"; "" where
+                they are variables themselves
     thousands   what divides thousands, "none" for nothing, None where each column has to show it
     fields      how many a row of a log has, None where the map does not say
     axes        "ship" or "earth": of u and v; None where the map does not say

@@ -1,7 +1,7 @@
-"""Reading MATLAB files of version 5 to 7 (.mat): vectors, matrices, and structures of them.
+"""Reading MATLAB files of version 5 to 7 (.mat): numbers, texts, and structures of them.
 
-The format is read here and not by a library, since only arrays of numbers and texts are wanted, and cells, objects and
-structures in each other are passed over without being made, however many there are and whatever sizes they state.
+The format is read here and not by a library, since only arrays of numbers and texts are wanted: objects, cells of
+anything else and structures deep in each other are passed over without being made, whatever sizes they state.
 Source: MathWorks, MAT-File Format, "Level 5 MAT-File Format".
 """
 
@@ -12,15 +12,13 @@ import struct
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
-from ..errors import LogError, Problem, among, reason
+from ..arrays import FloatArray
+from ..errors import LogError, Problem, reason
 from ..limits import LOG_COLUMNS, MATLAB_BYTES, content
-from .cells import table_of
-from .mapping import LogMap
-from .table import Table
 
 HEADER = 128
 _NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
@@ -29,89 +27,40 @@ _TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18
 """How elements hold texts, by type."""
 _MATRIX, _COMPRESSED = 14, 15
 _CLASSES = {1: "cell array", 2: "structure", 3: "object", 4: "text", 5: "sparse matrix", 17: "object", 18: "object"}
-_STRUCTURE, _TEXT = 2, 4
+_CELLS, _STRUCTURE, _TEXT = 1, 2, 4
 _NUMERIC = range(6, 16)
 _COMPLEX = 0x0800
+_VERSION_4 = frozenset(1000 * order + 10 * kind + form for order in (0, 1) for kind in range(6) for form in (0, 1))
+"""Types of arrays in files of version 4: the order of bytes, the type of number, and whether it is a text."""
+DEPTH = 4
+"""How deep structures may stand in each other."""
+MADE = 200_000
+"""Fields and cells that are made of one file at most: of more, those that follow are not looked at."""
+RUNS = 500
+"""Structures that one array of them may have."""
 
 
 @dataclass(frozen=True)
-class Columns:
-    """What a file holds as columns of one length.
+class Other:
+    """What is held and is neither numbers, texts nor structures: in words, with the article where they need one."""
 
-    names    of the columns: of a matrix "name 1", "name 2", ...
-    columns  numbers (n_rows,), or a list of texts
-    other    what else there is, by name: what kind it is
-    """
+    kind: str
 
-    names: list[str]
-    columns: list[Any]
-    other: dict[str, str]
+    def __str__(self) -> str:
+        return self.kind
+
+
+Value: TypeAlias = "FloatArray | str | list[str] | dict[str, Value] | list[dict[str, Value]] | Other"
+"""What a variable or field holds: numbers of any shape, a text, texts, a structure, structures of one kind, or what
+else it is."""
 
 
 class _Damaged(Exception):
     """The bytes are not what the format says."""
 
 
-def read_matlab(path: Path, log_map: LogMap) -> Table:
-    """The columns of a MATLAB file that a map names.  Raises LogError where it cannot be read or lacks one."""
-    import pandas as pd
-
-    found = columns_of(path, log_map.variable)
-    columns = [pd.Series(one, dtype="string" if isinstance(one, list) else "float64") for one in found.columns]
-    return table_of(path, log_map, found.names, columns, 1, "row", str(path))
-
-
-def columns_of(path: Path, variable: str = "") -> Columns:
-    """The columns in a file: of a structure or matrix, or the variables that are equally long vectors.
-
-    Raises LogError where the file cannot be read, or holds none.
-    """
-    return _columns(path, variables(path), variable)
-
-
-def _columns(path: Path, held: dict[str, Any], variable: str) -> Columns:
-    if variable:
-        if variable not in held:
-            place = f"{path}, [log] variable of the map"
-            raise LogError(Problem(f"the file has no variable '{variable[:80]}'", place, **among(variable, [*held])))
-        found = _spread({variable: held[variable]})
-    else:
-        found = _spread(held)
-    other = {name: value for name, value in found.items() if isinstance(value, str)}
-    arrays = {name: value for name, value in found.items() if not isinstance(value, str) and len(value) > 1}
-    # Constants of a ship or a run stand beside what was logged.
-    lengths = [len(value) for value in arrays.values()]
-    usual = max(set(lengths), key=lambda length: (lengths.count(length), length), default=0)
-    columns = {name: value for name, value in arrays.items() if len(value) == usual}
-    other |= {name: f"{len(value)} numbers" for name, value in arrays.items() if len(value) != usual}
-    if not columns:
-        why = "; ".join(f"'{name}' is a {kind}" for name, kind in list(other.items())[:8]) or "it is empty"
-        fix = "save vectors of numbers of one length, a structure of them, or a matrix with a column each"
-        raise LogError(Problem("the file holds no columns of numbers", str(path), why, fix))
-    LOG_COLUMNS.hold(len(columns), str(path), LogError)
-    return Columns(list(columns), list(columns.values()), other)
-
-
-def _spread(held: dict[str, Any]) -> dict[str, Any]:
-    """Vectors by name; fields of structures and columns of matrices on their own; what else there is as words."""
-    inside = [value for value in held.values() if isinstance(value, dict)]
-    out: dict[str, Any] = {}
-    for name, value in held.items():
-        if isinstance(value, dict):
-            prefix = f"{name}." if len(inside) > 1 else ""
-            out |= {f"{prefix}{key}": one for key, one in _spread(value).items()}
-        elif isinstance(value, np.ndarray) and value.ndim == 2 and min(value.shape) > 1:
-            LOG_COLUMNS.hold(value.shape[1], name[:80], LogError)
-            out |= {f"{name} {k + 1}": value[:, k] for k in range(value.shape[1])}
-        elif isinstance(value, np.ndarray) and value.ndim > 2:
-            out[name] = f"array of {value.ndim} dimensions"
-        else:
-            out[name] = value.ravel() if isinstance(value, np.ndarray) else value
-    return out
-
-
-def variables(path: Path) -> dict[str, Any]:
-    """Arrays of numbers (of any shape), lists of texts and structures of them by name; words for anything else.
+def variables(path: Path) -> dict[str, Value]:
+    """What a file holds, by name.
 
     Raises LogError where it is damaged, for files of version 4 and 7.3, and where there is more in it than may be.
     """
@@ -120,13 +69,28 @@ def variables(path: Path) -> dict[str, Any]:
     if b"MATLAB 7.3" in data[:HEADER] or data.startswith(b"\x89HDF"):
         why = "files of version 7.3 are HDF5"
         raise LogError(Problem("the MATLAB file is of version 7.3", str(path), why, fix))
+    if of_version_4(data):
+        raise LogError(Problem("the MATLAB file is of version 4", str(path), "files of versions 5 to 7 are read", fix))
     mark = data[126:128]
     if len(data) < HEADER or mark not in (b"IM", b"MI"):
-        raise LogError(Problem("the file is no MATLAB file of version 5 to 7", str(path), fix=fix))
+        why = "its first bytes do not say so" if data else "it is empty"
+        raise LogError(Problem("the file is no MATLAB file of version 5 to 7", str(path), why, fix))
     try:
         return _Reader("<" if mark == b"IM" else ">").variables(data)
     except (_Damaged, struct.error, zlib.error, ValueError) as error:
         raise LogError(Problem("the MATLAB file cannot be read", str(path), reason(error), fix)) from error
+
+
+def of_version_4(start: bytes) -> bool:
+    """Whether a file begins as those of version 4: with the type, sizes and the name of an array."""
+    if len(start) < 21:
+        return False
+    for order in "<>":
+        kind, rows, columns, imaginary, length = struct.unpack_from(f"{order}5i", start)
+        if kind in _VERSION_4 and min(rows, columns) >= 0 and imaginary in (0, 1) and 1 < length <= 64:
+            name = start[20 : 20 + length - 1]
+            return name.isascii() and name.replace(b"_", b"").isalnum()
+    return False
 
 
 class _Reader:
@@ -138,9 +102,10 @@ class _Reader:
     def __init__(self, order: str):
         self.order = order
         self.left = MATLAB_BYTES.most
+        self.made = 0
 
-    def variables(self, data: bytes) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+    def variables(self, data: bytes) -> dict[str, Value]:
+        found: dict[str, Value] = {}
         at = HEADER
         while at + 8 <= len(data):
             kind, body, at = self.element(data, at)
@@ -172,36 +137,42 @@ class _Reader:
             raise _Damaged(f"an element says it has {size} bytes, and {max(0, len(data) - start)} are left")
         return kind, data[start : start + size], end
 
-    def matrix(self, data: bytes, depth: int) -> tuple[str, Any]:
-        """Name and value of an array: numbers, texts, a structure; words for anything else."""
+    def matrix(self, data: bytes, depth: int) -> tuple[str, Value]:
+        """Name and value of an array."""
+        self.made += 1
         _, flags, at = self.element(data, 0)
         (flag,) = struct.unpack_from(f"{self.order}I", flags)
         form = flag & 0xFF
         if form in (17, 18):
-            return self.text(data, at), _CLASSES[form]
+            return self.text(data, at), Other(_CLASSES[form])
         _, sizes, at = self.element(data, at)
         shape = tuple(int(one) for one in np.frombuffer(sizes, f"{self.order}i4"))
         kind, raw, at = self.element(data, at)
         name = self.decoded(kind, raw)
         if min(shape, default=-1) < 0 or len(shape) < 2 or len(shape) > 32:
             raise _Damaged(f"array '{name[:40]}' says it has the shape {shape[:4]}")
-        if form == _STRUCTURE and depth < 2 and math.prod(shape) == 1:
-            return name, self.structure(data, at, depth)
+        many = math.prod(shape)
+        if form == _STRUCTURE and depth < DEPTH and 0 < many <= RUNS:
+            return name, self.structures(data, at, depth, many)
+        if form == _CELLS and depth <= DEPTH and 0 < many <= MADE - self.made:
+            return name, self.cells(data, at, many)
         if form not in _NUMERIC and form != _TEXT:
-            return name, _CLASSES.get(form, "array of an unknown class")
+            several = f"array of {many} structures" if form == _STRUCTURE and many > 1 else ""
+            return name, Other(several or _CLASSES.get(form, "array of an unknown class"))
         kind, raw, at = self.element(data, at)
         if form == _TEXT:
             return name, self.texts(kind, raw, shape)
         if kind not in _NUMBERS:
             raise _Damaged(f"array '{name[:40]}' holds numbers of an unknown type, {kind}")
         if flag & _COMPLEX:
-            return name, "array of complex numbers"
+            return name, Other("array of complex numbers")
         values = np.frombuffer(raw, self.order + _NUMBERS[kind])
-        if len(values) != math.prod(shape):
+        if len(values) != many:
             raise _Damaged(f"array '{name[:40]}' holds {len(values)} numbers, and its shape is {shape[:4]}")
         return name, values.astype(np.float64).reshape(shape, order="F")
 
-    def structure(self, data: bytes, at: int, depth: int) -> dict[str, Any]:
+    def structures(self, data: bytes, at: int, depth: int, many: int) -> Value:
+        """A structure, or several whose fields follow each other, those of the first one first."""
         _, raw, at = self.element(data, at)
         (length,) = struct.unpack(f"{self.order}i", raw)
         _, raw, at = self.element(data, at)
@@ -209,12 +180,31 @@ class _Reader:
             raise _Damaged("a structure has no names of fields")
         LOG_COLUMNS.hold(len(raw) // length, "a structure", LogError)
         names = [raw[k : k + length].split(b"\0")[0].decode("latin-1") for k in range(0, len(raw), length)]
-        found: dict[str, Any] = {}
-        for name in names:
+        if many * len(names) > MADE - self.made:
+            return Other("structure")
+        found: list[dict[str, Value]] = []
+        for _ in range(many):
+            fields: dict[str, Value] = {}
+            for name in names:
+                kind, body, at = self.element(data, at)
+                if kind != _MATRIX:
+                    raise _Damaged(f"field '{name}' is no array")
+                fields[name] = self.matrix(body, depth + 1)[1] if body else Other("empty array")
+            found.append(fields)
+        return found if many > 1 else found[0]
+
+    def cells(self, data: bytes, at: int, many: int) -> Value:
+        """The texts of an array of cells; words where one of them holds anything else."""
+        found: list[str] = []
+        for _ in range(many):
             kind, body, at = self.element(data, at)
-            if kind != _MATRIX:
-                raise _Damaged(f"field '{name}' is no array")
-            found[name] = self.matrix(body, depth + 1)[1] if body else "empty array"
+            value = self.matrix(body, DEPTH + 1)[1] if kind == _MATRIX and body else ""
+            if not isinstance(value, str):
+                empty = isinstance(value, np.ndarray) and not value.size
+                if not empty:
+                    return Other(_CLASSES[_CELLS])
+                value = ""
+            found.append(value)
         return found
 
     def text(self, data: bytes, at: int) -> str:
@@ -227,9 +217,9 @@ class _Reader:
             encoding += "-le" if self.order == "<" else "-be"
         return raw.decode(encoding, "replace")
 
-    def texts(self, kind: int, raw: bytes, shape: tuple[int, ...]) -> Any:
-        """Rows of a matrix of characters."""
+    def texts(self, kind: int, raw: bytes, shape: tuple[int, ...]) -> Value:
+        """A text, or the rows of a matrix of characters."""
         text = self.decoded(kind, raw)
-        if len(shape) != 2 or len(text) != shape[0] * shape[1] or not text:
-            return "text"
-        return [text[k :: shape[0]].strip() for k in range(shape[0])] if shape[0] > 1 else "text"
+        if len(shape) != 2 or len(text) != shape[0] * shape[1]:
+            return Other("text")
+        return [text[k :: shape[0]].strip() for k in range(shape[0])] if shape[0] > 1 else text.strip()

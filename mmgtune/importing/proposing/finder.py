@@ -14,7 +14,7 @@ from .clocks import Clock
 from .guess import LIKELY, SURE, Guess
 from .look import Look
 from .sampling import Sample
-from .words import ordered, plain, quantity_named, unit_named
+from .words import numbered, ordered, plain, quantity_named, unit_named
 
 MOST_LOGS = 8
 """Logs whose motion is looked at."""
@@ -48,7 +48,9 @@ class Finder:
         below = [row if any(one.units[k] == row for one in samples) else "" for k, row in enumerate(self.first.units)]
         # A unit below a name tells what it is of as one behind it does.
         shown = [f"{name} [{row}]" if row else name for name, row in zip(self.first.names, below, strict=True)]
-        self.said = [quantity_named(name) for name in shown]
+        counted = numbered(self.first.names)
+        # Of many columns called alike the name is that of the table.
+        self.said = ["" if k in counted else quantity_named(name) for k, name in enumerate(shown)]
         # North and east by a letter each; alone, n is what propellers turn with.
         letters = {plain(name): k for k, name in enumerate(self.first.names)}
         if {"n", "e"} <= set(letters):

@@ -26,7 +26,7 @@ def found_in(samples: Sequence[Sample]) -> Finder:
     shared, others = in_common(samples)
     shared, said = without_codes(shared)
     find = Finder(shared)
-    find.notes += said
+    find.notes += [*dict.fromkeys(note for one in samples for note in one.notes), *said]
     if others:
         shown = listed([f"'{name[:60]}'" for name in others], 8)
         find.notes.append(f"not all logs have {shown}: left out")

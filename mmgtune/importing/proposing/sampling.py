@@ -326,22 +326,27 @@ def _of_workbook(path: Path) -> Sample:
 def _of_matlab(path: Path) -> Sample:
     import pandas as pd
 
-    from ..matlab import columns_of, variables
+    from ..matlab import variables
+    from ..matlab_columns import columns_of
 
-    held = variables(path)
     found = columns_of(path)
-    # One structure among other things is named, so that a vector beside it cannot come in its way.
-    inside = [name for name, value in held.items() if isinstance(value, dict)]
     layout: dict[str, Any] = {"format": "mat"}
-    if len(inside) == 1 and len(held) > 1:
-        try:
-            within = columns_of(path, inside[0])
-        except LogError:
-            within = found
-        if len(within.names) >= 4:
-            found, layout["variable"] = within, inside[0]
+    if found.variable:
+        layout["variable"] = found.variable
+    else:
+        held = variables(path)
+        # One structure among other things is named, so that a vector beside it cannot come in its way.
+        inside = [name for name, value in held.items() if isinstance(value, dict)]
+        if len(inside) == 1 and len(held) > 1:
+            try:
+                within = columns_of(path, inside[0])
+            except LogError:
+                within = found
+            if len(within.names) >= 4:
+                found, layout["variable"] = within, inside[0]
     texts = [pd.Series(one[:ROWS], dtype="string" if isinstance(one, list) else "float64") for one in found.columns]
-    return _made(path, layout, found.names, [""] * len(found.names), texts)
+    made = _made(path, layout, found.names, [""] * len(found.names), texts)
+    return replace(made, notes=found.notes)
 
 
 def _named(

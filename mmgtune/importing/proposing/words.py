@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from functools import lru_cache
 
 from ... import units
@@ -190,6 +191,9 @@ def quantity_named(name: str) -> str:
     text = plain(_with_rpm(name))
     if not text or len(text) > 120:
         return ""
+    part = name.rpartition(".")[2]
+    if part != name and part.isalpha() and (found := quantity_named(part)) in (TIME, DATE):
+        return found  # wind.t is a time
     found = next((quantity for quantity, pattern in _PATTERNS if pattern.search(text)), "")
     if found in ("wind_speed", "wind_speed_app") and _DIRECTION.search(text):
         return found.replace("speed", "dir")
@@ -198,6 +202,19 @@ def quantity_named(name: str) -> str:
         if port != starboard:
             return f"{found}_{'port' if port else 'stbd'}"
     return found
+
+
+NUMBERED = 5
+"""Columns of one name and a number each, from which that is the name of the table that they are of."""
+
+
+def numbered(names: Sequence[str]) -> set[int]:
+    """Which columns are called alike but for a number, as "data 1", "data 2", ... of a matrix called data."""
+    stems: dict[str, list[int]] = {}
+    for k, name in enumerate(names):
+        if found := re.fullmatch(r"(.*\D)\d+", plain(name)):
+            stems.setdefault(found.group(1), []).append(k)
+    return {k for columns in stems.values() if len(columns) >= NUMBERED for k in columns}
 
 
 def _with_rpm(name: str) -> str:

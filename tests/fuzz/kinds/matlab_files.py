@@ -34,6 +34,8 @@ def make(rng: np.random.Generator) -> Files:
     held: dict[str, Any] = columns
     if rng.random() < 0.3:
         held = {"log": columns, "more": pick(rng, ODD)}
+    elif rng.random() < 0.3:
+        held = _put_together(rng, columns)
     elif rng.random() < 0.2:
         held = {"data": np.column_stack([one for one in columns.values() if np.shape(one) == (120,)] or [np.zeros(3)])}
     out = io.BytesIO()
@@ -43,6 +45,26 @@ def make(rng: np.random.Generator) -> Files:
     if how > 0.4:
         content = several(rng, content, [mutated_bytes, _sizes, _wrapped])
     return {"log.mat": content, "map.toml": MAP.encode()}
+
+
+def _put_together(rng: np.random.Generator, columns: dict[str, Any]) -> dict[str, Any]:
+    """Columns as arrays of structures, timeseries, signals, or beside cells that name them, some not as they should."""
+    names = np.array([*columns], dtype=object)
+    kind = np.dtype([(name, "O") for name in columns])
+    many = np.array([tuple(columns.values())] * int(rng.integers(1, 4)), dtype=kind).reshape(1, -1)
+    times = pick(rng, (np.arange(120.0), np.arange(40.0), *ODD))
+    signals = np.array([(one, name) for name, one in columns.items()], dtype=[("values", "O"), ("label", "O")])
+    return pick(
+        rng,
+        (
+            {"run": many, "other": pick(rng, ODD)},
+            {name: {"Time": times, "Data": one} for name, one in columns.items()},
+            {"out": {"time": times, "signals": signals.reshape(1, -1)}},
+            {"names": names[: int(rng.integers(1, 12))], "data": np.ones((120, len(names)))},
+            {"a": columns, "b": columns, "c": {"d": columns}},
+            {"clock": rng.uniform(0.0, 2100.0, (120, 6)), **columns},
+        ),
+    )
 
 
 def _sizes(rng: np.random.Generator, content: bytes) -> bytes:

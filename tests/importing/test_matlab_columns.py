@@ -1,0 +1,161 @@
+"""MATLAB files as programs and people put them together: matrices, several runs, timeseries, what Simulink logs."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import scipy.io
+
+from mmgtune.importing import import_logs, parse_map, propose_map
+from mmgtune.importing.matlab_columns import columns_of
+from mmgtune.importing.proposing.words import numbered, quantity_named
+from mmgtune.units import DEG
+
+from .made import close, refusal, suzaku
+
+RUN = suzaku()
+
+
+def logged(trial):
+    """Vectors by name, as a MATLAB user calls them."""
+    return {
+        "t": trial.t,
+        "north": trial.x,
+        "east": trial.y,
+        "heading": np.mod(trial.psi / DEG, 360.0),
+        "rpm": 60.0 * trial.n,
+        "rudder": trial.delta / DEG,
+    }
+
+
+HELD = logged(RUN)
+NAMES = list(HELD)
+MATRIX = np.column_stack(list(HELD.values()))
+SECOND = logged(suzaku("zigzag_20"))
+STAMPS = pd.Timestamp("2020-05-17 23:58:00") + pd.to_timedelta(RUN.t, unit="s")
+TIMELESS = {name: values for name, values in HELD.items() if name != "t"}
+
+
+def texts(values):
+    """A cell array of texts."""
+    return np.array([*values], dtype=object)
+
+
+def array_of(*several):
+    """An array of structures."""
+    made = [tuple(one.values()) for one in several]
+    return np.array(made, dtype=[(name, "O") for name in several[0]]).reshape(1, -1)
+
+
+def series(values):
+    """What a timeseries is as a structure."""
+    return {"Time": RUN.t, "Data": values, "Name": "unnamed"}
+
+
+def datevec():
+    fields = [STAMPS.year, STAMPS.month, STAMPS.day, STAMPS.hour, STAMPS.minute]
+    return np.column_stack([*fields, STAMPS.second + STAMPS.microsecond / 1e6]).astype(np.float64)
+
+
+SIGNALS = array_of(*({"values": one.reshape(-1, 1), "label": name, "dimensions": 1} for name, one in TIMELESS.items()))
+
+FILES = {
+    "vectors": HELD,
+    "rows": {name: values.reshape(1, -1) for name, values in HELD.items()},
+    **{f"matrix called {name}": {name: MATRIX} for name in ("data", "datum", "zeit", "Data", "m")},
+    "a row for each quantity": {"data": MATRIX.T},
+    "names in cells beside a matrix": {"data": MATRIX, "colheaders": texts(NAMES)},
+    "names in a text beside a matrix": {"data": MATRIX, "header": ", ".join(NAMES)},
+    "what importdata makes": {"A": {"data": MATRIX, "textdata": texts(NAMES), "colheaders": texts(NAMES)}},
+    "timeseries": {name: series(values) for name, values in TIMELESS.items()},
+    "timeseries in a structure": {"log": {name: series(values) for name, values in TIMELESS.items()}},
+    "signals of Simulink": {"logsout": {"time": RUN.t, "signals": SIGNALS, "blockName": "x"}},
+    "one signal of Simulink": {"out": {"time": RUN.t, "signals": {"values": MATRIX[:, 1:], "label": ""}}},
+    "dates as datevec makes them": {**TIMELESS, "time": datevec()},
+    "dates in cells": {**TIMELESS, "time": texts(map(str, STAMPS))},
+    "two structures": {"run1": HELD, "run2": SECOND},
+    "an array of structures": {"run": array_of(HELD, SECOND)},
+    "structures in one": {"data": {"run1": HELD, "run2": SECOND, "ship": "suzaku"}},
+    "two matrices": {"run1": MATRIX, "run2": np.column_stack(list(SECOND.values()))},
+}
+
+
+def saved(path, held, **how):
+    scipy.io.savemat(path, held, **how)
+    return path
+
+
+@pytest.mark.parametrize("held", FILES.values(), ids=FILES)
+def test_the_proposed_map_imports_the_run(tmp_path, held):
+    log = saved(tmp_path / "log.mat", held)
+    proposal = propose_map(log)
+    assert not proposal.asks
+    plain = propose_map(saved(tmp_path / "plain.mat", HELD))
+    found = import_logs([log], proposal.map(), ".", dry_run=True).trials[0]
+    close(found, import_logs([tmp_path / "plain.mat"], plain.map(), ".", dry_run=True).trials[0], 1e-4)
+
+
+@pytest.mark.parametrize(
+    ("held", "runs"),
+    [
+        ("two structures", ["run1", "run2"]),
+        ("an array of structures", ["run(1)", "run(2)"]),
+        ("structures in one", ["data.run1", "data.run2"]),
+        ("two matrices", ["run1", "run2"]),
+    ],
+)
+def test_several_runs_are_told_and_each_can_be_read(tmp_path, held, runs):
+    log = saved(tmp_path / "log.mat", FILES[held])
+    proposal = propose_map(log)
+    assert f"the file holds 2 runs, '{runs[0]}' and '{runs[1]}'" in proposal.notes[0]
+    assert proposal.map().variable == runs[0]
+    lengths = [len(columns_of(log, run).columns[0]) for run in runs]
+    assert lengths == [len(HELD["t"]), len(SECOND["t"])]
+    # An import without a word of it says so too.
+    text = proposal.text.replace(f'variable = "{runs[0]}"\n', "")
+    unsaid = import_logs([log], parse_map(text), ".", dry_run=True)
+    assert any("holds 2 runs" in note for note in unsaid.quality[0]["notes"])
+
+
+def test_a_run_that_there_is_not(tmp_path):
+    log = saved(tmp_path / "log.mat", FILES["an array of structures"])
+    for name in ("run", "run(3)", "run(x)", "run(0)"):
+        told = refusal(lambda name=name: columns_of(log, name))
+        assert "an array of 2 structures" in told
+        assert 'such as "run(1)"' in told
+    assert "no variable 'runs(1)'" in refusal(lambda: columns_of(log, "runs(1)"))
+
+
+def test_what_is_left_out_is_told(tmp_path):
+    more = {"wind": np.arange(50.0), "z": 1j * RUN.t, "cube": np.ones((4, 4, 4)), "L": 3.0, "name": "a ship"}
+    notes = columns_of(saved(tmp_path / "log.mat", HELD | more)).notes
+    assert notes == [
+        "left out, as the columns have 481 rows: 'wind' (50 values)",
+        "left out: 'z' (array of complex numbers) and 'cube' (array of 3 dimensions)",
+    ]
+    other = {**FILES["timeseries"], "wind": {"Time": RUN.t[::5], "Data": RUN.t[::5]}}
+    told = columns_of(saved(tmp_path / "log.mat", other))
+    assert "wind" not in told.names
+    assert "'wind', which has times of its own" in told.notes[0]
+
+
+def test_a_structure_beside_vectors_keeps_its_name(tmp_path):
+    wind = {"t": RUN.t, "speed": 5.0 + np.sin(RUN.t), "dir": np.full(len(RUN.t), 30.0)}
+    proposal = propose_map(saved(tmp_path / "log.mat", HELD | {"wind": wind}))
+    assert proposal.table()[-2][:2] == ("wind_speed", "'wind.speed'")
+    assert quantity_named("wind.t") == "time"
+    assert quantity_named("wind.speed") == "wind_speed"
+
+
+@pytest.mark.parametrize("name", ["data", "datum", "dia"])
+def test_numbered_columns_of_a_table_say_nothing(name):
+    names = [f"{name} {k}" for k in range(1, 8)]
+    assert numbered(["time", *names]) == set(range(1, 8))
+    assert numbered(["RPM 1", "RPM 2", "Rudder 1", "Rudder 2"]) == set()
+
+
+def test_files_that_are_not_read_say_what_they_are(tmp_path):
+    old = saved(tmp_path / "old.mat", HELD, format="4")
+    assert "is of version 4" in refusal(lambda: propose_map(old))
+    noise = tmp_path / "noise.mat"
+    noise.write_bytes(bytes(range(256)) * 8)
+    assert "no MATLAB file of version 5 to 7" in refusal(lambda: propose_map(noise))
