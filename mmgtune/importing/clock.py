@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import units
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import LogError, Problem
 from ..trial.schema import impossible
@@ -18,6 +19,7 @@ from .numerals import numbers_in
 from .periods import Periods
 from .stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, of_day, of_digits, of_watch, times_told
 from .thousands import either_way, first_marked, in_thousands
+from .with_units import numbers_with_unit
 
 OUTLIERS = 3
 """Rows in a row whose stamps may be off while the clock as a whole is right."""
@@ -32,7 +34,10 @@ READABLE = "seconds, 2024-05-14T02:15:00, 14.05.2024 02:15:00, 02:15:00, 021500"
 
 
 class Stamps:
-    """Turns time cells into numbers, block by block; ``decimal`` and ``thousands`` are the signs in them."""
+    """Turns time cells into numbers, block by block; ``decimal`` and ``thousands`` are the signs in them.
+
+    stated  unit that the cells say themselves, such as 12.5 s; "" where they do not
+    """
 
     def __init__(self, source: TimeSource, path: Path, decimal: str = ".", thousands: str | None = None):
         self.source, self.path, self.decimal, self.thousands = source, path, decimal, thousands
@@ -43,6 +48,7 @@ class Stamps:
         self.began: dict[str, float] = {}
         self.ended: dict[str, float] = {}
         self.periods = Periods()
+        self.stated = ""
 
     @property
     def clock(self) -> bool:
@@ -70,7 +76,7 @@ class Stamps:
             if self.thousands is None and in_thousands(text, self.decimal) is None:
                 first = first_marked(text, self.decimal)
                 raise LogError(either_way(str(text.iloc[first]), f"{self.path}, line {rows[first]}, time"))
-            return numbers_in(text, self.decimal, self.thousands)
+            return self._with_unit(text, numbers_in(text, self.decimal, self.thousands))
         if self.format == DIGITS:
             return self.periods.over_midnight(of_digits(numbers_in(text, self.decimal)))
         if self.format == TIME_OF_DAY:
@@ -83,6 +89,16 @@ class Stamps:
         if stamps.isna().all():
             self._unreadable(text, rows, "as ISO 8601 dates, such as 2024-05-01T10:00:00.5")
         return self._since(stamps)
+
+    def _with_unit(self, text: Any, plain: FloatArray) -> FloatArray:
+        """Numbers (n_rows,) of cells that say their unit, such as 12.5 s; ``plain`` ones where they do not."""
+        if np.isfinite(plain).any():
+            return plain
+        numbers, unit = numbers_with_unit(text, self.decimal)
+        if unit not in units.factors("s") or (self.stated and unit != self.stated):
+            return plain
+        self.stated = unit
+        return numbers
 
     def _seen(self, text: Any, rows: IntArray) -> str:
         known = text.dropna()

@@ -135,15 +135,16 @@ def import_logs(
     hold_flag(overwrite)
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
-        refuse_existing([out / REPORT, *(out / f"{_name(log_map.of(log).id, log)}.parquet" for log in paths)])
+        names = [_name(one, log) for log in paths for one in _each(log_map, log)]
+        refuse_existing([out / REPORT, *(out / f"{name}.parquet" for name in names)])
     trials: list[Trial] = []
     quality: list[dict[str, Any]] = []
     problems: list[Problem] = []
-    for log in paths:
+    for log, own in [(path, own) for path in paths for own in _each(log_map, path)]:
         try:
             # Damaged numbers overflow on their way to where they are found out.
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                made = _trials(log, log_map.of(log), step)
+                made = _trials(log, own, step)
         except LogError as error:
             problems += error.problems
             continue
@@ -179,12 +180,21 @@ def paths_of(logs: Path | str | Sequence[Path | str]) -> tuple[Path, ...]:
     return tuple(dict.fromkeys(Path(one) for one in several))
 
 
-def _name(template: str, log: Path) -> str:
-    return re.sub(r"[^\w.-]+", "_", _written(template, log)).strip("._") or "trial"
+def _each(log_map: LogMap, log: Path) -> tuple[LogMap, ...]:
+    """The maps of one log: one for each of its parts, whose names then have that of the part in them."""
+    own = log_map.of(log)
+    template = own.id if "{part}" in own.id else f"{own.id}_{{part}}"
+    return tuple(replace(one, id=template) for one in own.of_parts()) or (own,)
 
 
-def _written(template: str, log: Path) -> str:
-    return template.replace("{stem}", log.stem).replace("{parent}", true_path(log).parent.name)
+def _name(log_map: LogMap, log: Path) -> str:
+    """The name of the trial that a log becomes."""
+    return re.sub(r"[^\w.-]+", "_", _written(log_map.id, log, log_map.part)).strip("._") or "trial"
+
+
+def _written(template: str, log: Path, part: str) -> str:
+    text = template.replace("{stem}", log.stem).replace("{parent}", true_path(log).parent.name)
+    return text.replace("{part}", part)
 
 
 def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial, dict[str, Any]]]:
@@ -211,7 +221,7 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
         what = f"each of the {len(records)} parts of the log has fewer than {FEWEST} rows to make a trial of"
         why = "; ".join(dict.fromkeys(records[0].notes[-2:]))
         raise LogError(Problem(what, str(log), why, "correct the clock's stamps in the log, or give another log"))
-    name = _name(log_map.id, log)
+    name = _name(log_map, log)
     found = []
     count = sum(not piece.follows for piece in made)
     cut_from = name if len(made) > 1 else ""
@@ -413,7 +423,7 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
         id=id,
         ship=log_map.ship,
         manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", true_path(record.path).parent.name),
-        group=_written(log_map.group, record.path) if log_map.group else "",
+        group=_written(log_map.group, record.path, log_map.part) if log_map.group else "",
         source=log_map.source,
         **required,
         extra={name: values for name, values in kept.items() if known_column(name)},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
@@ -12,6 +12,8 @@ from ..trial.schema import MAIN_INPUTS
 ASKS = "?"
 """How a value begins that is a question to who uses the map."""
 FORMATS = ("csv", "parquet", "nmea", "xlsx", "mat")
+PARTS = ("sheet", "variable")
+"""Keys of [log] that name one of several runs in a log, or several."""
 TIME_FORMATS = ("number", "iso", "clock", "hhmmss", "mm:ss", "date", "dmy", "mdy", "ymd")
 PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")
 TABLES = {
@@ -147,8 +149,10 @@ class LogMap:
     name        file or preset it was read from
     some        maps of logs that differ, by the pattern of their names
     sheet       of a workbook, "" for its first that holds rows
-    variable    of a MATLAB file, a structure or a matrix that holds the columns, such as "log" or "data.run(2)"; "" where
-                they are variables themselves
+    variable    of a MATLAB file, a structure or a matrix that holds the columns, such as "log" or "data.run(2)"; ""
+                where they are variables themselves
+    parts       sheets or variables that each become a trial of one log, the first of them also in ``sheet`` or
+                ``variable``; () where a log is one trial
     thousands   what divides thousands, "none" for nothing, None where each column has to show it
     fields      how many a row of a log has, None where the map does not say
     axes        "ship" or "earth": of u and v; None where the map does not say
@@ -173,6 +177,7 @@ class LogMap:
     fields: int | None = None
     sheet: str = ""
     variable: str = ""
+    parts: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     time: TimeSource = field(default_factory=TimeSource)
     sources: dict[str, Source] = field(default_factory=dict)
@@ -198,6 +203,17 @@ class LogMap:
     def of(self, log: Path) -> LogMap:
         """The map of one log: the first in ``some`` whose pattern its name matches, else this one."""
         return next((one for pattern, one in self.some if fnmatchcase(log.name, pattern)), self)
+
+    def of_parts(self) -> tuple[LogMap, ...]:
+        """A map for each of ``parts``, () where there are none."""
+        if self.variable:
+            return tuple(replace(self, parts=(), variable=part) for part in self.parts)
+        return tuple(replace(self, parts=(), sheet=part) for part in self.parts)
+
+    @property
+    def part(self) -> str:
+        """The sheet or variable that is read, "" where the map does not say."""
+        return self.sheet or self.variable
 
     @property
     def means(self) -> dict[str, tuple[str, ...]]:

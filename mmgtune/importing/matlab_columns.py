@@ -33,7 +33,8 @@ _DATEVEC = ((1900, 2200), (1, 12), (1, 31), (0, 24), (0, 59), (0, 60.001))
 class Columns:
     """What a file holds as columns of one length.
 
-    names     of the columns: of a matrix "name 1", "name 2", ... where nothing beside it names them
+    names     of the columns; where nothing names those of a matrix, "name 1", "name 2", ..., and "column 1", ... of one
+              that was asked for
     columns   numbers (n_rows,), or a list of texts
     other     what else there is that has many values, by name: what it is
     notes     what was found out, in sentences
@@ -54,7 +55,7 @@ def read_matlab(path: Path, log_map: LogMap) -> Table:
     found = columns_of(path, log_map.variable)
     columns = [pd.Series(one, dtype="string" if isinstance(one, list) else "float64") for one in found.columns]
     table = table_of(path, log_map, found.names, columns, 1, "row", str(path))
-    table.notes += found.notes
+    table.notes += [*([f"read from '{log_map.variable}'"] if log_map.variable else []), *found.notes]
     return table
 
 
@@ -76,7 +77,7 @@ def columns_of(path: Path, variable: str = "") -> Columns:
             f"the file holds {len(several)} runs, {shown}: '{variable}' is read; "
             f'a map with variable = "{several[1]}" in [log] reads the next'
         )
-    found = _spread({variable.rpartition(".")[2]: _at(held, variable, path)} if variable else held, notes)
+    found = _spread({"column": _at(held, variable, path)} if variable else held, notes)
     arrays = {name: value for name, value in found.items() if not isinstance(value, Other) and len(value) > 1}
     other = {name: str(value) for name, value in found.items() if isinstance(value, Other)}
     # Constants of a ship or a run stand beside what was logged.

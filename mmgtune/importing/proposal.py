@@ -18,12 +18,12 @@ from ..phrases import counted
 from .doubts import shifted_lever
 from .forms import form_of
 from .importer import Imported, import_logs, paths_of
-from .mapping import ASKS, LogMap
+from .mapping import ASKS, PARTS, LogMap
 from .proposing.find_rest import RECOVERED
 from .proposing.finder import MOST_LOGS, Finder
 from .proposing.finding import found_in
 from .proposing.guess import Guess
-from .proposing.sampling import Sample, sample_of
+from .proposing.sampling import Sample, samples_of
 from .proposing.writing import guess_dict, table_of_guesses, toml_of_map
 from .reading_map import parse_map
 from .yaw import WANDERS
@@ -135,7 +135,8 @@ def propose_map(logs: Path | str | Sequence[Path | str]) -> Proposal:
     looked = paths[:: max(1, -(-len(paths) // MOST_LOGS))]
     # Damaged numbers overflow on their way to where they are found out.
     with np.errstate(all="ignore"):
-        finder = found_in([sample_of(path) for path in looked])
+        samples = [one for path in looked for one in samples_of(path)]
+        finder = found_in(_of_all(samples[:: max(1, -(-len(samples) // MOST_LOGS))]))
     left = [
         finder.shown(k)
         for k in range(len(finder.first.names))
@@ -146,6 +147,17 @@ def propose_map(logs: Path | str | Sequence[Path | str]) -> Proposal:
         return proposal
     with np.errstate(all="ignore"):
         return _tried(proposal, finder)
+
+
+def _of_all(samples: list[Sample]) -> list[Sample]:
+    """The same, the first of them with a layout that names no sheets or variables which other logs lack."""
+    first = samples[0]
+    others = {key for key in PARTS if any(one.layout.get(key) != first.layout.get(key) for one in samples)}
+    if not others:
+        return samples
+    layout = {key: value for key, value in first.layout.items() if key not in others}
+    note = f"the logs differ in their {' and '.join(f'{key}s' for key in PARTS if key in others)}: of each one is read"
+    return [replace(first, layout=layout, notes=[*first.notes, note]), *samples[1:]]
 
 
 def _made(finder: Finder, paths: tuple[Path, ...], left: tuple[str, ...]) -> Proposal:

@@ -165,6 +165,7 @@ class _Reader(TomlReader):
         form = self.choice("log", log, "format", FORMATS)
         sources = self.sources()
         point, stated = self.point()
+        sheets, held = self.parts(log, "sheet"), self.parts(log, "variable")
         made = LogMap(
             name=self.path.stem,
             path=self.path,
@@ -177,8 +178,9 @@ class _Reader(TomlReader):
             header=self.flag(log, "header"),
             fields=self.count(log, "fields") or None,
             missing=self.texts(log, "missing"),
-            sheet=self.text_of("log", log, "sheet"),
-            variable=self.text_of("log", log, "variable"),
+            sheet=next(iter(sheets), ""),
+            variable=next(iter(held), ""),
+            parts=tuple(one) if len(one := sheets or held) > 1 else (),
             time=self.time(),
             sources=sources,
             axes=self.choice("velocity", self.table("velocity"), "axes", ("ship", "earth")),
@@ -229,6 +231,19 @@ class _Reader(TomlReader):
             fix = 'say the other one, or "none"'
             self.problem("'log.thousands' is the decimal sign", "log", "thousands", "one sign cannot be both", fix)
         return found
+
+    def parts(self, table: dict[str, Any], key: str) -> list[str]:
+        """Names of sheets or variables: one, or a list of several."""
+        value = table.get(key, "")
+        if not isinstance(value, list):
+            one = self.text_of("log", table, key)
+            return [one] if one else []
+        if value and all(isinstance(one, str) and one for one in value) and len({*value}) == len(value):
+            limits.LOG_PARTS.hold(len(value), f"{self.path}, log.{key}", LogError)
+            return value
+        why = "each is to be a name of its own"
+        self.problem(f"'log.{key}' is {brief(value)}", "log", key, why, f'write {key} = ["...", "..."], or one name')
+        return []
 
     def texts(self, table: dict[str, Any], key: str) -> tuple[str, ...]:
         value = table.get(key, [])

@@ -61,7 +61,8 @@ class Rows:
         t = found.pop(TIME)
         headers = {name: self.names[next(iter(of.values()))] for name, of in self.wanted.items()}
         notes = [*self.stamps.notes, *self.collector.notes()]
-        return Table(self.path, t, found, numbers, headers, self.stamps.clock, unit, notes)
+        stated = {TIME: self.stamps.stated} if self.stamps.stated else {}
+        return Table(self.path, t, found, numbers, headers, self.stamps.clock, unit, notes, stated)
 
     def judge(self, table: Table) -> None:
         """Note cells that are no numbers.  Raises LogError where they say that the log is to be read differently."""

@@ -28,6 +28,7 @@ class TimeParts:
     """
 
     clock = True
+    stated = ""
 
     def __init__(self, names: Mapping[str, str], path: Path, decimal: str = "."):
         self.names, self.path, self.decimal = names, path, decimal

@@ -7,7 +7,7 @@ import itertools
 import re
 import warnings
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any
 
 from ..errors import LogError, Problem, among, brief, reason
 from ..limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS, SHEET_ROWS
+from ..phrases import listed
 from .cells import table_of
 from .mapping import LogMap
 from .numerals import number_in
@@ -28,13 +29,29 @@ OLD = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 """How a workbook of the older kind begins (.xls), and one with a password."""
 
 
+LOOKED_AT = 2000
+"""Rows of a sheet that are looked at to tell which holds a log."""
+SHORT = 0.2
+"""Share of the rows of numbers of the longest sheet, of those looked at, from which another one is a log too."""
+
+
 @dataclass(frozen=True)
 class Sheet:
-    """One sheet: its rows as they stand, empty cells None, ragged; ``names`` of all sheets of the workbook."""
+    """One sheet: its rows as they stand, empty cells None, ragged; notes: what is to be said of the others."""
 
     name: str
     rows: list[tuple[Any, ...]]
-    names: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A sheet before it is read: its first rows, how many of those are rows of numbers, and whether it is hidden."""
+
+    name: str
+    hidden: bool
+    rows: list[tuple[Any, ...]]
+    numbers: int
 
 
 def read_workbook(path: Path, log_map: LogMap) -> Table:
@@ -65,36 +82,73 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
     ]
     first = log_map.skip + (2 if log_map.header else 1)
     table = table_of(path, log_map, names, columns, first, "row", where)
+    table.notes += sheet.notes
     empty = [table.headers[name] for name, values in table.columns.items() if not (values == values).any()]
-    if empty and (formula := _formula(path, sheet.name, names, empty)):
-        why = f"a cell says {formula}, and the file does not hold what comes of it"
-        fix = "open it in a spreadsheet program and save it again, or save the values alone"
-        raise LogError(Problem(f"column '{empty[0]}' holds formulas without results", where, why, fix))
+    hold_results(path, sheet.name, names, empty)
     return table
 
 
-def sheet_of(path: Path, wanted: str) -> Sheet:
-    """A sheet by name, or the first that holds rows of numbers where ``wanted`` is "".  Raises LogError.
+def hold_results(path: Path, sheet: str, names: list[str], empty: list[str]) -> None:
+    """Raise LogError where a column in which there is nothing holds formulas whose results the file does not hold."""
+    if empty and (formula := _formula(path, sheet, names, empty)):
+        why = f"a cell says {formula}, and the file does not hold what comes of it"
+        fix = "open it in a spreadsheet program and save it again, or save the values alone"
+        place = f"{path}, sheet '{sheet}'"
+        raise LogError(Problem(f"column '{empty[0]}' holds formulas without results", place, why, fix))
 
-    Where none does, the first whose cells are numbers written as texts, else the last.
-    """
+
+def sheet_of(path: Path, wanted: str) -> Sheet:
+    """A sheet by name, or the first that holds a log where ``wanted`` is "".  Raises LogError."""
     with _opened(path) as book:
-        names = tuple(one.title for one in book.worksheets)
+        names = [one.title for one in book.worksheets]
         if wanted and wanted not in names:
             place = f"{path}, [log] sheet of the map"
             raise LogError(Problem(f"the workbook has no sheet '{wanted[:80]}'", place, **among(wanted, names)))
-        found, of_texts = None, None
-        for one in book.worksheets:
-            if wanted in ("", one.title):
-                found = Sheet(one.title, _rows(one, path), names)
-                if wanted or sum(any(isinstance(cell, float | int) for cell in row) for row in found.rows) > 1:
-                    return found
-                if of_texts is None and sum(any(_numeric(cell) for cell in row) for row in found.rows) > 1:
-                    of_texts = found
-        found = of_texts or found
-        if found is None:
-            raise LogError(Problem("the workbook has no sheet with cells", str(path), fix="give another file"))
-        return found
+        notes: list[str] = []
+        if not wanted:
+            outlines = _outlines(book, path)
+            wanted = next(iter(logs_among(outlines)), names[-1])
+            notes = passed_over(outlines, wanted)
+        elif len(names) > 1:
+            notes = [f"read from sheet '{wanted}'"]
+        found = next(one for one in book.worksheets if one.title == wanted)
+        return Sheet(wanted, _rows(found, path), tuple(notes))
+
+
+def outlines_of(path: Path) -> list[Outline]:
+    """What the sheets of a workbook begin with.  Raises LogError where it cannot be read."""
+    with _opened(path) as book:
+        return _outlines(book, path)
+
+
+def _outlines(book: Any, path: Path) -> list[Outline]:
+    outlines = []
+    if not book.worksheets:
+        raise LogError(Problem("the workbook has no sheet with cells", str(path), fix="give another file"))
+    for one in book.worksheets:
+        rows = _rows(one, path, LOOKED_AT)
+        outlines.append(Outline(one.title, one.sheet_state != "visible", rows, sum(map(_of_numbers, rows))))
+    return outlines
+
+
+def logs_among(outlines: Sequence[Outline]) -> list[str]:
+    """Names of the sheets that hold logs: of those that are not hidden all with rows of numbers, but for short ones."""
+    shown = [one for one in outlines if not one.hidden and one.numbers > 1]
+    shown = shown or [one for one in outlines if one.numbers > 1]
+    most = max((one.numbers for one in shown), default=0)
+    return [one.name for one in shown if one.numbers >= SHORT * most]
+
+
+def passed_over(outlines: Sequence[Outline], read: str) -> list[str]:
+    """What is said of the sheets that are not read, in sentences."""
+    if len(outlines) < 2:
+        return []
+    others = [one.name for one in outlines if one.name != read]
+    logs = [one for one in logs_among(outlines) if one != read]
+    hidden = {one.name for one in outlines if one.hidden}
+    shown = listed([f"'{one}'{' (hidden)' if one in hidden else ''}" for one in others], 6)
+    said = f"the workbook has {len(outlines)} sheets: '{read}' is read, {shown} not"
+    return [f'{said}; sheet = "{logs[0]}" in [log] of a map reads another one' if logs else said]
 
 
 def names_of(rows: list[tuple[Any, ...]], header: bool) -> list[str]:
@@ -144,19 +198,24 @@ def _opened(path: Path, formulas: bool = False) -> Iterator[Any]:
                 book.close()
     except (LogError, MemoryError):
         raise
+    except zipfile.BadZipFile as error:
+        why = f"it is cut short, or damaged: {reason(error)}"
+        raise LogError(
+            Problem("the workbook cannot be read", str(path), why, "copy it again from its source")
+        ) from error
     except Exception as error:  # the library raises what it comes across where a file is damaged
         why = f"{type(error).__name__}: {reason(error)}"
         fix = "save it again as .xlsx with a spreadsheet program, or save the sheet as CSV"
         raise LogError(Problem("the workbook cannot be read", str(path), why, fix)) from error
 
 
-def _rows(sheet: Any, path: Path) -> list[tuple[Any, ...]]:
-    """All rows of a sheet, the empty ones at its end left out."""
+def _rows(sheet: Any, path: Path, most: int | None = None) -> list[tuple[Any, ...]]:
+    """All rows of a sheet, or the first of them, the empty ones at its end left out."""
     # The sheet's own word on its size is not to be relied on, and every row would be filled up to it.
     sheet.reset_dimensions()
     rows: list[tuple[Any, ...]] = []
     cells = 0
-    for row in sheet.iter_rows(values_only=True):
+    for row in itertools.islice(sheet.iter_rows(values_only=True), most):
         cells += len(row) + 1
         LOG_COLUMNS.hold(len(row), f"{path}, row {len(rows) + 1}", LogError)
         SHEET_ROWS.hold(len(rows) + 1, str(path), LogError)
@@ -177,6 +236,13 @@ def _formula(path: Path, sheet: str, names: list[str], empty: list[str]) -> str:
                 if name in empty and isinstance(cell, str) and re.match(r"=\S", cell):
                     return f"'{cell[:60]}'"
     return ""
+
+
+def _of_numbers(row: Sequence[Any]) -> bool:
+    """Whether a row holds two numbers at least, also such that are written as texts, and little else."""
+    cells = [cell for cell in row if cell is not None]
+    numbers = sum(isinstance(cell, float | int) or _numeric(cell) for cell in cells)
+    return numbers > 1 and 2 * numbers >= len(cells)
 
 
 def _numeric(cell: Any) -> bool:

@@ -106,14 +106,22 @@ def test_the_proposed_map_imports_the_run(tmp_path, held):
 def test_several_runs_are_told_and_each_can_be_read(tmp_path, held, runs):
     log = saved(tmp_path / "log.mat", FILES[held])
     proposal = propose_map(log)
-    assert f"the file holds 2 runs, '{runs[0]}' and '{runs[1]}'" in proposal.notes[0]
-    assert proposal.map().variable == runs[0]
+    assert proposal.notes[0] == "the file holds 2 runs: each becomes a trial"
+    assert list(proposal.map().parts) == runs
     lengths = [len(columns_of(log, run).columns[0]) for run in runs]
     assert lengths == [len(HELD["t"]), len(SECOND["t"])]
-    # An import without a word of it says so too.
-    text = proposal.text.replace(f'variable = "{runs[0]}"\n', "")
-    unsaid = import_logs([log], parse_map(text), ".", dry_run=True)
-    assert any("holds 2 runs" in note for note in unsaid.quality[0]["notes"])
+    found = import_logs([log], proposal.map(), ".", dry_run=True)
+    parts = [run.replace("(", "_").replace(")", "") for run in runs]
+    assert [trial.id for trial in found.trials] == [f"log_{part}" for part in parts]
+    assert [trial.n_samples for trial in found.trials] == lengths
+    # A map that names one reads it alone; one that names none says which it reads.
+    whole = f"variable = [{', '.join(f'{chr(34)}{run}{chr(34)}' for run in runs)}]"
+    assert whole in proposal.text
+    second = parse_map(proposal.text.replace(whole, f'variable = "{runs[1]}"'))
+    assert [trial.n_samples for trial in import_logs([log], second, ".", dry_run=True).trials] == lengths[1:]
+    if held != "two matrices":  # whose columns have the matrix's name then
+        unsaid = import_logs([log], parse_map(proposal.text.replace(whole, "")), ".", dry_run=True)
+        assert any(f"holds 2 runs, '{runs[0]}' and" in note for note in unsaid.quality[0]["notes"])
 
 
 def test_a_run_that_there_is_not(tmp_path):

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ... import units
 from ...arrays import FloatArray
 from ...errors import LogError, Problem, reason
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
@@ -21,6 +22,7 @@ from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
 from ..numerals import holds_numbers, numbers_in
 from ..parquet_log import batches, being_read, schema_of
+from ..position_parts import HEMISPHERES
 from ..sides import midships, sided, takes_side
 from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
 from ..table import MISSING
@@ -31,8 +33,14 @@ from .words import known_unit, quantity_named
 
 ROWS = 60_000
 """Rows of a log that are looked at."""
+RUNS = 8
+"""Runs in one log that are looked at."""
+HEADING = 400
+"""Rows among which the names of the columns are looked for."""
 MOST_SIGNALS = 500
 """Names of signals that a column may hold."""
+NO_ANGLES = {one for kind in ("m", "s", "m/s", "1/s") for one in units.factors(kind)}
+"""Units behind numbers that may look like minutes and sides of an angle."""
 _PATH = re.compile(r"[./_:]")
 """What divides the name of a signal."""
 HEAD, ALMOST = 20, 0.95
@@ -130,16 +138,30 @@ class Sample:
 
 
 def sample_of(path: Path) -> Sample:
-    """The beginning of a log of any kind but NMEA 0183.  Raises LogError where it cannot be read."""
+    """The beginning of a log of any kind but NMEA 0183, of several runs in it the first.
+
+    Raises LogError where it cannot be read.
+    """
+    return samples_of(path)[0]
+
+
+def samples_of(path: Path) -> list[Sample]:
+    """The beginnings of the runs in a log: of sheets with the same columns, and of structures or matrices.
+
+    Their layout is that of all of them.  Raises LogError where the log cannot be read.
+    """
     form = form_of(path)
-    reader = {"csv": _of_text, "parquet": _of_parquet, "xlsx": _of_workbook, "mat": _of_matlab}.get(form)
-    if reader is None:
+    if form == "nmea":
         raise LogError(Problem("the log is NMEA 0183, whose sentences say what they hold", str(path)))
-    sample = reader(path)
-    if len(sample.names) < 2 or not any(np.isfinite(one).sum() > 1 for one in sample.numbers):
-        raise _no_table(path, len(sample.names), "none with numbers")
-    _hold_wide(sample)
-    return sample
+    if form in ("xlsx", "mat"):
+        samples = (_of_workbook if form == "xlsx" else _of_matlab)(path)
+    else:
+        samples = [(_of_text if form == "csv" else _of_parquet)(path)]
+    for sample in samples:
+        if len(sample.names) < 2 or not any(np.isfinite(one).sum() > 1 for one in sample.numbers):
+            raise _no_table(path, len(sample.names), "none with numbers")
+        _hold_wide(sample)
+    return samples
 
 
 def _hold_wide(sample: Sample) -> None:
@@ -159,12 +181,14 @@ def _hold_wide(sample: Sample) -> None:
 
 def _no_table(path: Path, seen: int, but: str) -> LogError:
     """What is said of a log without rows of numbers, of which some columns were seen."""
-    why = f"{counted(seen, 'column')} {'was' if seen == 1 else 'were'} seen, {but}" if seen else ""
+    why = (
+        f"{counted(seen, 'column')} {'was' if seen == 1 else 'were'} seen, {but}" if seen else "there are no rows in it"
+    )
     fix = "give a table with a row for each time and a column for each quantity"
     return LogError(Problem("the log is no table of numbers", str(path), why, fix))
 
 
-def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Sequence[str], texts: list[Any]) -> Sample:
+def _made(path: Path, layout: dict[str, Any], names: Sequence[str], below: Sequence[str], texts: list[Any]) -> Sample:
     """A sample of columns as they are printed."""
     LOG_COLUMNS.hold(len(names), str(path), LogError)
     if texts and len(texts[0]) < 2:  # be they thousands, which take long to look at
@@ -176,7 +200,7 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
     decimal = layout.get("decimal", ".")
     if (decimal == "," or not any(_has_points(one) for one in texts)) and any(_divides(one, ",") for one in texts):
         layout["decimal"], layout["thousands"] = (decimal := ","), "."
-    units = list(units)
+    said = list(below)
     numbers, written, with_side = [], set(), set()
     for k, text in enumerate(texts):
         if holds_numbers(text):
@@ -191,8 +215,11 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
             if named and not clock:
                 found = np.where(midships(text), 0.0, found)
             if plain < (1.0 if named else 0.5) and not clock:
+                with_unit, unit = numbers_with_unit(text.where(~text.str.lower().isin(MISSING)), decimal)
                 angles, sides = degrees(text), sided(text, decimal)
                 told = [float(np.isfinite(one).mean()) for one in (angles, sides)]
+                if unit in NO_ANGLES and quantity_named(names[k]) not in HEMISPHERES:
+                    told[0] = 0.0  # 12.5 m has no minutes, and 12.5 s is not south
                 # S alone is south to one column and starboard to another: its name tells.
                 if told[1] > max(0.5, plain) and (told[1] > told[0] or named):
                     found = sides
@@ -200,13 +227,11 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
                 elif told[0] > 0.5 > plain:
                     found = angles
                     written.add(k)
-                else:
-                    with_unit, unit = numbers_with_unit(text.where(~text.str.lower().isin(MISSING)), decimal)
-                    if unit:
-                        found, units[k] = with_unit, unit
+                elif unit:
+                    found, said[k] = with_unit, unit
         with np.errstate(over="ignore"):
             numbers.append(np.where(np.abs(found) < 1e14, found, np.nan))
-    return Sample(path, layout, tuple(names), tuple(units), texts, numbers, frozenset(written), frozenset(with_side))
+    return Sample(path, layout, tuple(names), tuple(said), texts, numbers, frozenset(written), frozenset(with_side))
 
 
 def _holds_dates(column: Any) -> bool:
@@ -256,7 +281,7 @@ def _of_text(path: Path) -> Sample:
         layout["encoding"] = encoding
     if decimal != ".":
         layout["decimal"] = decimal
-    names, units = _named(layout, rows, first, header, unit_row, width)
+    names, below = _named(layout, rows, first, header, unit_row, width)
     with warnings.catch_warnings(), io.BufferedReader(Lines(path), 1 << 16) as file:
         warnings.simplefilter("ignore")
         try:
@@ -280,7 +305,7 @@ def _of_text(path: Path) -> Sample:
         except (ValueError, pd.errors.ParserError, UnicodeError, OverflowError) as error:
             fix = "write the map by hand, with delimiter, skip and header in [log]"
             raise LogError(Problem("the log cannot be read as a table", str(path), reason(error), fix)) from error
-    return _made(path, layout, names, units, [frame[k] for k in range(len(names))])
+    return _made(path, layout, names, below, [frame[k] for k in range(len(names))])
 
 
 def _of_parquet(path: Path) -> Sample:
@@ -303,47 +328,81 @@ def _plain(column: Any) -> Any:
     return column.astype("string") if str(column.dtype) == "category" else column
 
 
-def _of_workbook(path: Path) -> Sample:
+def _of_workbook(path: Path) -> list[Sample]:
+    from ..workbook import logs_among, outlines_of, passed_over
+
+    outlines = outlines_of(path)
+    logs = logs_among(outlines) or [one.name for one in outlines][-1:]
+    heads = {one.name: _head(one.rows[:HEADING]) for one in outlines if one.name in logs}
+    # Sheets that are written alike are runs; of others the first is the log.
+    alike = [one for one in logs if heads[one] == heads[logs[0]]]
+    layout: dict[str, Any] = {"format": "xlsx"}
+    notes = passed_over(outlines, logs[0]) if len(alike) == 1 else []
+    if len(alike) > 1:
+        layout["sheet"] = alike
+        others = [f"'{one.name}'" for one in outlines if one.name not in alike]
+        notes = [f"{len(alike)} sheets have the same columns: each becomes a trial"]
+        notes += [f"not read: sheet {listed(others, 6)}"] if others else []
+    elif len(outlines) > 1:
+        layout["sheet"] = logs[0]
+    return [replace(_of_sheet(path, one, layout), notes=notes) for one in alike[:RUNS]]
+
+
+def _head(rows: Sequence[Sequence[Any]]) -> tuple[list[str], int | None]:
+    """The names of the columns of a sheet, and the row that they stand in."""
+    from ..workbook import as_text
+
+    start = [[as_text(cell) or "" for cell in row] for row in rows]
+    _, header, _, width = heading(start)
+    return (start[header] if header is not None else [""] * width), header
+
+
+def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
     import pandas as pd
 
-    from ..workbook import as_text, sheet_of
+    from ..workbook import as_text, hold_results, sheet_of
 
-    sheet = sheet_of(path, "")
-    start = [[as_text(cell) or "" for cell in row] for row in sheet.rows[:400]]
+    sheet = sheet_of(path, name)
+    start = [[as_text(cell) or "" for cell in row] for row in sheet.rows[:HEADING]]
     first, header, unit_row, width = heading(start)
-    layout: dict[str, Any] = {"format": "xlsx"}
-    if len(sheet.names) > 1:
-        layout["sheet"] = sheet.name
-    names, units = _named(layout, start, first, header, unit_row, width)
+    names, below = _named(layout, start, first, header, unit_row, width)
     body = sheet.rows[first : first + ROWS]
     texts = [
         pd.Series([as_text(row[k]) if k < len(row) else None for row in body], dtype="string")
         for k in range(len(names))
     ]
-    return _made(path, layout, names, units, texts)
+    empty = [one for one, text in zip(names, texts, strict=True) if one and not text.notna().any()]
+    hold_results(path, sheet.name, names, empty)
+    return _made(path, layout, names, below, texts)
 
 
-def _of_matlab(path: Path) -> Sample:
+def _of_matlab(path: Path) -> list[Sample]:
+    from ..matlab import variables
+    from ..matlab_columns import columns_of, runs_in
+
+    held = variables(path)
+    runs = runs_in(held)
+    if len(runs) > 1:
+        layout: dict[str, Any] = {"format": "mat", "variable": runs}
+        of_runs = [columns_of(path, one) for one in runs[:RUNS]]
+        notes = [f"the file holds {len(runs)} runs: each becomes a trial"]
+        return [_of_columns(path, layout, replace(one, notes=[*notes, *one.notes])) for one in of_runs]
+    found, layout = columns_of(path), {"format": "mat"}
+    # One structure among other things is named, so that a vector beside it cannot come in its way.
+    inside = [name for name, value in held.items() if isinstance(value, dict)]
+    if len(inside) == 1 and len(held) > 1:
+        try:
+            within = columns_of(path, inside[0])
+        except LogError:
+            within = found
+        if len(within.names) >= 4:
+            found, layout["variable"] = within, inside[0]
+    return [_of_columns(path, layout, found)]
+
+
+def _of_columns(path: Path, layout: dict[str, Any], found: Any) -> Sample:
     import pandas as pd
 
-    from ..matlab import variables
-    from ..matlab_columns import columns_of
-
-    found = columns_of(path)
-    layout: dict[str, Any] = {"format": "mat"}
-    if found.variable:
-        layout["variable"] = found.variable
-    else:
-        held = variables(path)
-        # One structure among other things is named, so that a vector beside it cannot come in its way.
-        inside = [name for name, value in held.items() if isinstance(value, dict)]
-        if len(inside) == 1 and len(held) > 1:
-            try:
-                within = columns_of(path, inside[0])
-            except LogError:
-                within = found
-            if len(within.names) >= 4:
-                found, layout["variable"] = within, inside[0]
     texts = [pd.Series(one[:ROWS], dtype="string" if isinstance(one, list) else "float64") for one in found.columns]
     made = _made(path, layout, found.names, [""] * len(found.names), texts)
     return replace(made, notes=found.notes)
@@ -357,10 +416,10 @@ def _named(
         layout["skip"], layout["header"], layout["fields"] = first, False, width
         return [""] * width, [""] * width
     names = [*rows[header], *[""] * (width - len(rows[header]))]
-    units = rows[unit_row] if unit_row is not None else []
+    below = rows[unit_row] if unit_row is not None else []
     if header:
         layout["skip"] = header
-    return names, [*units, *[""] * (len(names) - len(units))][: len(names)]
+    return names, [*below, *[""] * (len(names) - len(below))][: len(names)]
 
 
 def heading(rows: Sequence[Sequence[str]]) -> tuple[int, int | None, int | None, int]:
@@ -383,7 +442,9 @@ def heading(rows: Sequence[Sequence[str]]) -> tuple[int, int | None, int | None,
         return first, above[0], above[1], width
     if not named or named[-1] != above[-1]:
         return first, None, None, width
-    return first, named[-1], None, width
+    # Below the names units may be described in words, and remarks may stand.
+    names = max(named, key=lambda k: (sum(bool(quantity_named(cell)) for cell in rows[k]), k))
+    return first, names, None, width
 
 
 def _names(row: Sequence[str], width: int) -> bool:
