@@ -171,7 +171,7 @@ def missing_between(t: FloatArray, columns: dict[str, FloatArray], inputs: Seque
             gone.setdefault((len(rows), float(t[apart][rows[0]])), []).append(name)
     said = [
         f"{listed(names)} {'is' if len(names) == 1 else 'are'} missing for {count * step:.4g} s "
-        f"(from {first:.6g} s of the log)"
+        f"(from {first:.12g} s of the log)"
         for (count, first), names in gone.items()
     ]
     return " and ".join(said)

@@ -98,7 +98,7 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
     q = quality
     lines = [
         (
-            f"{q['id']}: {q['n_samples']} samples, {q['duration_s']:.6g} s from {q['began_s']:.6g} s of the log, "
+            f"{q['id']}: {q['n_samples']} samples, {q['duration_s']:.6g} s from {q['began_s']:.12g} s of the log, "
             f"step {q['step_s']:.6g} s ({q['log']})"
         )
     ]
