@@ -128,12 +128,4 @@ def _set_of(several: Sequence[Trial | IndexTrial]) -> TrialSet:
     """Trials as a data set that tunes to all of them.  Raises TrialError for none, and for two of one id."""
     if not several:
         raise TrialError(_NONE)
-    ids = [one.id for one in several]
-    twice = [id for id in dict.fromkeys(ids) if ids.count(id) > 1]
-    if twice:
-        why = "trials are told apart by their ids"
-        raise TrialError(Problem(f"two trials are called '{twice[0]}'", "trials", why, "give each its own id"))
-    series = {one.id: one for one in several if isinstance(one, Trial)}
-    stated = {one.id: one for one in several if isinstance(one, IndexTrial)}
-    ship = next((one.ship for one in several if one.ship), "")
-    return TrialSet(series, tuple(series), (), ship, stated=stated, tune_stated=tuple(stated))
+    return TrialSet(several, [one.id for one in several], ())

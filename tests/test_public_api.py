@@ -465,7 +465,7 @@ NUMBERS = ("speed", "n", "heading", "longest", "sample", "step")
         (lambda: mmgtune.read_results("a\0b"), "no results of a fleet"),
         (lambda: mmgtune.sweep(SHIP, TRIALS, folder="\udcff"), "not UTF-8 text"),
         *((partial(of, SHIP, BACK), "time does not strictly increase (turn_p35)") for of in (*JUDGING, mmgtune.fit)),
-        (lambda: mmgtune.validate(SHIP, replace(TRIALS, trials={"a": BACK}, tune=("a",), test=())), "time does not"),
+        (lambda: mmgtune.validate(SHIP, replace(TRIALS, trials=[BACK], tune=("turn_p35",), test=())), "time does not"),
     ],
 )  # fmt: skip
 def test_arguments_of_another_kind_are_refused_in_words(call, words):

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from numbers import Integral
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError, among, brief, closest, kind_of
 from ..phrases import counted
 from ..resources import folder, looked_for, must_be_name, profile_names, taken, trial_set_names
+from .by_hand import Given, roles_of, trials_by_id
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
@@ -22,28 +23,58 @@ from .split import SPLIT, Split, read_split
 from .voyage import Voyage
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class TrialSet(Plotted):
-    """Trials by id, in the order of their file names.
+    """Trials by id, in the order of their file names.  One may be made by hand: ``TrialSet([a, b], ["a"], ["b"])``.
 
+    trials      by id; a list of them will do, in which those of stated indices may stand too
     tune, test  ids of ``trials``, in the order of the split; without a split all trials tune
-    stated      trials of which only indices are known, by id; tune_stated, test_stated their ids likewise
-    ship        id of the ship, "" where neither split nor files say
+    stated      trials of which only indices are known, by id; tune_stated, test_stated their ids likewise; those that
+                are named in tune and test are put there
+    ship        id of the ship, "" where neither split nor files say; where it is not given the first that a trial names
     licence     of the measurements and how to cite them, "" where the split does not say: profiles tuned to them
                 carry both
     path        folder or file they come from
+
+    Raises OptionError for what is no trial or no list of ids.  Raises TrialError for two trials of one id, one under
+    the id of another, ids of no trial, ids that are named twice, and ids that both tune and test.
     """
 
     trials: dict[str, Trial]
     tune: tuple[str, ...]
     test: tuple[str, ...]
-    ship: str = ""
-    path: Path | None = None
-    licence: str = ""
-    citation: str = ""
-    stated: dict[str, IndexTrial] = field(default_factory=dict)
-    tune_stated: tuple[str, ...] = ()
-    test_stated: tuple[str, ...] = ()
+    ship: str
+    path: Path | None
+    licence: str
+    citation: str
+    stated: dict[str, IndexTrial]
+    tune_stated: tuple[str, ...]
+    test_stated: tuple[str, ...]
+
+    def __init__(
+        self,
+        trials: Given,
+        tune: Iterable[str],
+        test: Iterable[str],
+        ship: str = "",
+        path: Path | None = None,
+        licence: str = "",
+        citation: str = "",
+        stated: Given = (),
+        tune_stated: Iterable[str] = (),
+        test_stated: Iterable[str] = (),
+    ) -> None:
+        series, indices = trials_by_id(trials, stated)
+        ids = {"tune": tune, "test": test, "tune_stated": tune_stated, "test_stated": test_stated}
+        roles = roles_of(ids, [*series, *indices])
+        ships = [one.ship for one in series.values()] + [one.ship for one in indices.values()]
+        found: dict[str, Any] = {"trials": series, "stated": indices, "ship": ship or next(filter(None, ships), "")}
+        found |= {"path": path, "licence": licence, "citation": citation}
+        for role, named in roles.items():
+            found[role] = tuple(name for name in named if name in series)
+            found[f"{role}_stated"] = tuple(name for name in named if name in indices)
+        for name, value in found.items():
+            object.__setattr__(self, name, value)  # it is frozen
 
     def __repr__(self) -> str:
         """In a line."""
@@ -182,16 +213,7 @@ def load_trials(name: str | Path) -> TrialSet:
     problems += of_another_ship([*trials.values(), *known.values()], said.ship, split)
     if problems:
         raise TrialError(*problems)
-    everything: dict[str, Trial | IndexTrial] = {**trials, **known}
-    ships = [trial.ship for trial in everything.values() if trial.ship]
-    ship = said.ship or (ships[0] if ships else "")
-
-    def among(ids: tuple[str, ...], which: Mapping[str, object]) -> tuple[str, ...]:
-        return tuple(name for name in ids if name in which)
-
-    series = among(said.tune, trials), among(said.test, trials)
-    indices = among(said.tune, known), among(said.test, known)
-    return TrialSet(trials, *series, ship, path, said.licence, said.citation, known, *indices)
+    return TrialSet(trials, said.tune, said.test, said.ship, path, said.licence, said.citation, known)
 
 
 def _stated(path: Path) -> tuple[list[IndexTrial], list[Problem]]:

@@ -77,8 +77,8 @@ def _with_time(table: Any) -> Any:
     time, dated = str(getattr(index, "name", None)), getattr(getattr(index, "dtype", None), "kind", "") in ("M", "m")
     if not (dated or name_and_unit(time)[0] == "t") or not hasattr(table, "keys") or "t" in table or time in table:
         return table
-    if dated and len(index):
-        index, time = (index - index[0]) / np.timedelta64(1, "s"), "t"
+    if dated:
+        index, time = (index - index[:1].min()) / np.timedelta64(1, "s"), "t"  # of no rows too
     return {time: index, **{name: table[name] for name in table}}
 
 

@@ -93,8 +93,8 @@ class Trial(Plotted):
 
     def __repr__(self) -> str:
         """In a line."""
-        words = ", ".join(word for word in (self.ship, self.manoeuvre, self.source) if word)
-        return f"Trial({inert(self.id)}: {inert(words)}, {counted(self.n_samples, 'sample')})"
+        words = [inert(word) for word in (self.ship, self.manoeuvre, self.source) if word]
+        return f"Trial({inert(self.id)}: {', '.join([*words, counted(self.n_samples, 'sample')])})"
 
     @property
     def n_samples(self) -> int:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from .. import limits
@@ -39,6 +40,7 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
         return Split(), [Problem("the split cannot be read", str(path), reason(error), "it must be UTF-8 text")]
     except TrialError as error:
         return Split(), list(error.problems)
+    place = partial(_place, path, text)
     reader = TomlReader(data, text, str(path))
     reader.unknown("", data, KEYS)
     texts = {key: reader.text_of("", data, key) for key in ("ship", "licence", "citation")}
@@ -48,34 +50,47 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
         ids = data.get(key, [])
         if not (isinstance(ids, list) and all(isinstance(one, str) for one in ids)):
             fix = f'write {key} = ["id", ...]'
-            problems.append(Problem(f"'{key}' is not a list of trial ids", _place(path, text, key), fix=fix))
+            problems.append(Problem(f"'{key}' is not a list of trial ids", place(key), fix=fix))
             sets[key] = ()
             continue
         sets[key] = tuple(ids)
-        problems += _ids(key, ids, known, path, text)
+        problems += wrong_ids(key, ids, known, place)
         if key == "tune" and not ids:
-            place = _place(path, text, "tune")
             why = "'tune' is empty" if "tune" in data else "'tune' is missing"
-            problems.append(Problem("no trial tunes", place, why, 'write tune = ["id", ...]'))
-    for name in sorted(set(sets["tune"]) & set(sets["test"])):
-        what = f"trial '{name}' is both in 'tune' and in 'test'"
-        why = "a test on what was tuned shows nothing"
-        problems.append(Problem(what, _place(path, text, name), why, "name it in one of them"))
+            problems.append(Problem("no trial tunes", place("tune"), why, 'write tune = ["id", ...]'))
+    problems += in_both(sets["tune"], sets["test"], place)
     return Split(**texts, tune=sets["tune"], test=sets["test"]), problems
 
 
-def _ids(key: str, ids: list[str], known: Iterable[str] | None, path: Path, text: str) -> list[Problem]:
-    """Ids named more than once, and ids of no trial."""
-    there = None if known is None else list(known)
+def wrong_ids(key: str, ids: Sequence[str], known: Iterable[str] | None, place: Callable[[str], str]) -> list[Problem]:
+    """Ids named more than once in "tune" or "test", and ids of no trial.
+
+    known  ids of the trials there are; None where that is not known
+    place  where a word stands
+    """
+    there = None if known is None else dict.fromkeys(known)
     problems = []
     for name, count in Counter(ids).items():
-        place = _place(path, text, name)
         if count > 1:
             why = "it would count that many times"
-            problems.append(Problem(f"trial '{name}' is named {count} times in '{key}'", place, why, "name it once"))
+            what = f"trial '{name}' is named {count} times in '{key}'"
+            problems.append(Problem(what, place(name), why, "name it once"))
         if there is not None and name not in there:
-            problems.append(Problem(f"'{key}' names trial '{name}', which is not there", place, **among(name, there)))
+            what = f"'{key}' names trial '{name}', which is not there"
+            problems.append(Problem(what, place(name), **among(name, list(there))))
     return problems
+
+
+def in_both(tune: Iterable[str], test: Iterable[str], place: Callable[[str], str]) -> list[Problem]:
+    """Ids that tune and test.
+
+    place  where a word stands
+    """
+    why, fix = "a test on what was tuned shows nothing", "name it in one of them"
+    return [
+        Problem(f"trial '{name}' is both in 'tune' and in 'test'", place(name), why, fix)
+        for name in sorted(set(tune) & set(test))
+    ]
 
 
 def _place(path: Path, text: str, word: str) -> str:

@@ -47,6 +47,14 @@ def test_the_examples_of_the_library_page_run(capsys):
     assert "4 of 4 of these trials improve" in capsys.readouterr().out
 
 
+def test_trials_from_tables_are_a_set_as_shown(capsys):
+    (example,) = code(ROOT / "docs" / "reference" / "api" / "trial.md", "python")
+    shown: dict = {}
+    exec(compile(example, "trial.md", "exec"), shown)
+    assert (shown["data"].tune, shown["data"].test) == (("turn_p35", "zigzag_20"), ("turn_p10",))
+    assert "On 1 trial not used for tuning" in capsys.readouterr().out
+
+
 def test_every_command_shown_is_understood(monkeypatch):
     """Commands are run with --help behind them: options and arguments must exist, nothing is worked on."""
     import typer.core

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from mmgtune.errors import TrialError
-from mmgtune.trial import load_trials, write_trial
+from mmgtune.errors import MmgtuneError, OptionError, TrialError
+from mmgtune.trial import IndexTrial, TrialSet, load_trials, write_trial
 
 from .made import made, with_value
 
@@ -131,3 +132,56 @@ def test_licence_and_citation_of_a_data_set_reach_the_profile_tuned_to_it(folder
     assert (data.licence, data.citation) == ("CC BY-NC 4.0", "Who Measured 2020")
     assert data.in_windows(50.0).licence == "CC BY-NC 4.0"
     assert "'licence' is 4, not text" in complaints(with_split(folder, 'licence = 4\ntune = ["turn_p10"]'))[0]
+
+
+A, B = (made(name, samples=60) for name in ("a", "b"))
+STATED = IndexTrial("report", "ketch", "turning", 0.6, None, None, {})
+
+
+@pytest.mark.parametrize(
+    "given", [[A, B], (A, B), {"a": A, "b": B}, iter([A, B])], ids=["list", "tuple", "dict", "iterator"]
+)
+def test_a_set_is_made_by_hand(given: object) -> None:
+    data = TrialSet(given, ["a"], ["b"])
+    assert list(data.trials.items()) == [("a", A), ("b", B)]
+    assert (data.tune, data.test, data.ship) == (("a",), ("b",), "ketch")
+    assert data["b"] is B
+
+
+def test_a_single_trial_and_stated_indices_are_put_where_they_belong() -> None:
+    assert list(TrialSet(A, ["a"], []).trials) == ["a"]
+    data = TrialSet([A, STATED], ["a", "report"], [])
+    assert (data.tune, data.tune_stated, list(data.stated)) == (("a",), ("report",), ["report"])
+    again = replace(data, ship="yawl")
+    assert (again.tune, again.tune_stated, again.ship) == (("a",), ("report",), "yawl")
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "said"),
+    [
+        (
+            ([A, B], ["a", "c"], ["d"]),
+            TrialError,
+            ["'tune' names trial 'c', which is not there", "'test' names trial 'd'"],
+        ),
+        (([A, B], ["a"], ["a"]), TrialError, ["trial 'a' is both in 'tune' and in 'test'"]),
+        (([A, B], ["a", "a"], []), TrialError, ["trial 'a' is named 2 times in 'tune'"]),
+        (([A, A], ["a"], []), TrialError, ["two trials are called 'a'"]),
+        (({"c": A}, ["c"], []), TrialError, ["trial 'a' stands under 'c'"]),
+        (({"a": A.to_frame()}, ["a"], []), OptionError, ["a DataFrame in trials is no trial"]),
+        ((A.to_frame(), ["a"], []), OptionError, ["a DataFrame is no set of trials"]),
+        (("suzaku", ["a"], []), OptionError, ["a str is no set of trials"]),
+        (([A], "a", []), OptionError, ["tune is 'a'"]),
+        (([A], [A], []), OptionError, ["a Trial in tune is no text"]),
+        (([A], None, []), OptionError, ["tune is None"]),
+    ],
+)
+def test_what_makes_no_set_is_told(given: tuple, error: type[MmgtuneError], said: list[str]) -> None:
+    with pytest.raises(error) as caught:
+        TrialSet(*given)
+    told = [str(one) for one in caught.value.problems]
+    assert len(told) == len(said)
+    for one, words in zip(told, said, strict=True):
+        assert words in one
+        assert "why: " in one
+        assert "fix: " in one

@@ -138,3 +138,20 @@ def test_facts_of_numpy_are_written(table, tmp_path):
     trial = trial_of(table, "one", noise={"x": np.float32(0.5)}, derived=("u", "v"))
     read = read_trial(write_trial(trial, tmp_path / "one.parquet"))
     assert (read.noise, read.derived) == ({"x": 0.5}, ("u", "v"))
+
+
+def test_a_table_of_no_rows_is_told_so_whatever_its_index_is(table):
+    others = table.drop(columns="t").iloc[:0]
+    for index in (pd.DatetimeIndex([]), pd.DatetimeIndex([], tz="Asia/Tokyo"), pd.to_timedelta([])):
+        with pytest.raises(TrialError) as found:
+            trial_of(others.set_axis(index, axis=0), "one")
+        (problem,) = found.value.problems
+        assert problem.what == "the trial has no samples"
+    with pytest.raises(TrialError) as found:
+        trial_of(pd.DataFrame(index=pd.DatetimeIndex([])), "one")
+    assert "None" not in str(found.value)
+
+
+def test_a_trial_of_which_nothing_is_said_prints_without_a_hole(table):
+    assert repr(trial_of(table, "one")) == f"Trial(one: {len(table)} samples)"
+    assert repr(trial_of(table, "one", manoeuvre="turning")) == f"Trial(one: turning, {len(table)} samples)"
