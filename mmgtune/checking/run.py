@@ -16,7 +16,7 @@ from ..metrics import METRICS
 from ..motions import orders_of
 from ..predictor import PhysicsPredictor, Predictor
 from ..profile.doubts import in_words
-from ..trial import TrialSet
+from ..trial import TrialSet, another_ship
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients
 from .measuring import Values, applicable, default_tolerances, measure, measure_stated
@@ -134,7 +134,7 @@ def check(
         sha256=ship.sha256,
         items=tuple(items),
         changed=changed_coefficients(ship.model, same, baseline, chosen, backend) if baseline and ship.model else (),
-        notes=(*_notes(baseline, backend), *in_words(ship.doubts)),
+        notes=(*another_ship(trials.ship, ship.id), *_notes(baseline, backend), *in_words(ship.doubts)),
         problems=(),
         made_by=made_by(),
         integrator=chosen.name,

@@ -107,8 +107,10 @@ def load_with_voyages(profile: str, trials: str) -> tuple[ShipProfile, TrialSet 
 
 def warn_of_another_ship(ship: HasId, data: TrialSet | VoyageSet) -> None:
     """Say on stderr that trials are of another ship than the model."""
-    if data.ship and data.ship != ship.id:
-        say(f"warning: the trials are of '{data.ship}', the model is of '{ship.id}'")
+    from ..trial import another_ship
+
+    for words in another_ship(data.ship, ship.id):
+        say(f"warning: {words}")
 
 
 def say_odd(data: TrialSet | VoyageSet, L_pp: float) -> None:

@@ -27,7 +27,7 @@ from ..options.scoring import WINDOW
 from ..phrases import capital
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, VoyageSet, oddities
+from ..trial import Trial, TrialSet, VoyageSet, another_ship, oddities
 from ..trial.schema import MOTION
 from ..trial.set_checks import turn_away
 from ..trial.swell import period_of, swings
@@ -153,7 +153,8 @@ def _looked_at(
     provenance: dict[str, Any],
 ) -> Diagnosis:
     """The answer of the trials that are not kept for testing; how long it took is for the caller to say."""
-    odd = oddities(trials.trials, profile.L_pp) if choice is None else []
+    odd = [f"{capital(words)}." for words in another_ship(trials.ship, profile.id)]
+    odd += oddities(trials.trials, profile.L_pp) if choice is None else []
     odd += _derived(trials.trials)
     whole = trials.trials
     jumped: dict[str, float] = {}

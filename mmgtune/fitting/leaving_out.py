@@ -36,7 +36,7 @@ from ..scores import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score
 from ..stated import IndexComparison, compare_stated
 from ..tables import write_table
 from ..threads import blas_on_one_thread
-from ..trial import Coverage, Trial, TrialSet, oddities
+from ..trial import Coverage, Trial, TrialSet, another_ship, oddities
 from .comparison import TrialComparison
 from .extending import held_words, settled, tune_trials
 from .folder import motions_table
@@ -430,6 +430,7 @@ def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: L
     ]
     around = notes_on(model, tuned, free=targets)
     return [
+        *(f"{capital(words)}." for words in another_ship(trials.ship, model.profile.id)),
         *oddities({trial.id: trial for trial in tuned}, model.L_pp),
         *(f"{words}." for words in in_words(model.profile.doubts())),
         *(f"{capital(note)}." for note in around),

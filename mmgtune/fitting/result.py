@@ -22,7 +22,7 @@ from ..predictor import words_of
 from ..profile import ShipProfile, tuned
 from ..profile.doubts import in_words
 from ..stated import IndexComparison
-from ..trial import Coverage
+from ..trial import Coverage, another_ship
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
@@ -268,7 +268,8 @@ class FitResult(Plotted):
 
     def _of_trials(self) -> list[Warned]:
         """What is to be known of the trials."""
-        found = []
+        of, model = self.provenance["trials"]["ship"], self.profile.id
+        found = [Warned("another-ship", f"{capital(words)}.") for words in another_ship(of, model)]
         trials = [c.trial for c in self.compared]
         generated = sorted({trial.id for trial in trials if trial.source == "generated"})
         if generated:

@@ -23,10 +23,10 @@ from ..made_from import identity_of, make_provenance
 from ..options import PosteriorOptions
 from ..options.choice import must_be
 from ..particles import SO_FAR, Particles
-from ..phrases import counted
+from ..phrases import capital, counted
 from ..profile import ShipProfile, tuned
 from ..threads import blas_on_one_thread
-from ..trial import Trial
+from ..trial import Trial, another_ship
 from .local import Mode, Windowed, find_mode, make_windowed, particles_about
 from .room import Room, make_room, tags_of
 from .sizing import Shown, Sized, own_variance, shown_by, size
@@ -48,6 +48,7 @@ class Posterior(Plotted):
     nonlinear   median over particles of the squares of residuals above those of the mode, over what it is if the
                 distribution is Gaussian
     interrupted whether it was stopped before its end
+    trials_ship id of the ship whose trials they are, "" where they do not say
     """
 
     written_by = "write_posterior"
@@ -61,6 +62,7 @@ class Posterior(Plotted):
     shown: Shown
     provenance: Mapping[str, Any]
     interrupted: bool = False
+    trials_ship: str = ""
 
     def __repr__(self) -> str:
         """In a line."""
@@ -74,7 +76,8 @@ class Posterior(Plotted):
     def warnings(self) -> list[str]:
         """What a reader must know before trusting the bands."""
         one_sided = self.shown.one_sided()
-        found = [one_sided] if one_sided else []
+        found = [f"{capital(words)}." for words in another_ship(self.trials_ship, self.particles.profile.id)]
+        found += [one_sided] if one_sided else []
         if self.interrupted:
             found.append(f"Stopped before its end: {SO_FAR}.")
         elif not self.converged:
@@ -159,13 +162,14 @@ def posterior(
     ship = ship_of(profile)
     if isinstance(trials, Sequence) and not isinstance(trials, str):
         chosen = list_of(trials)
-        return _drawn(ship, chosen, options, hooks, {"trials": [trial.id for trial in chosen]})
+        of = next((trial.ship for trial in chosen if trial.ship), "")
+        return _drawn(ship, chosen, options, hooks, {"trials": [trial.id for trial in chosen]}, of)
     data = trials_of(trials)
     provenance = make_provenance(ship, data, command)
     identity = identity_of(ship, data, options, provenance)
     kept = kept_in(folder, resume)
     with journalled(kept, identity, hooks.stop, resume=resume, name=JOURNAL):
-        return _drawn(ship, [data.trials[name] for name in data.tune], options, hooks, provenance)
+        return _drawn(ship, [data.trials[name] for name in data.tune], options, hooks, provenance, data.ship)
 
 
 def _drawn(
@@ -174,8 +178,9 @@ def _drawn(
     options: PosteriorOptions,
     hooks: Hooks,
     provenance: Mapping[str, Any],
+    trials_ship: str,
 ) -> Posterior:
-    """Particles from trials."""
+    """Particles from trials of a ship of some id."""
     hold_some(chosen)
     room = make_room(ship, size=options.room, without=options.without)
     backend = get_backend(options.backend)
@@ -213,6 +218,7 @@ def _drawn(
         shown=shown_by(chosen),
         provenance=provenance,
         interrupted=interrupted,
+        trials_ship=trials_ship,
     )
 
 

@@ -28,7 +28,7 @@ from .index_trial import IndexTrial
 from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
-from .set_checks import check_trials, oddities
+from .set_checks import another_ship, check_trials, oddities
 from .surroundings import measured_around, surroundings
 from .voyage import Voyage, open_voyage
 from .voyage_set import VoyageSet, holds_voyages, load_voyages
@@ -46,6 +46,7 @@ __all__ = [
     "TrialSet",
     "Voyage",
     "VoyageSet",
+    "another_ship",
     "check_trial",
     "check_trials",
     "holds_voyages",

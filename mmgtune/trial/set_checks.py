@@ -52,6 +52,15 @@ def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str
     return [f"Something is odd in {len(worst)} of {len(trials)} trials: {said}. 'mmgtune trials check' says more."]
 
 
+def another_ship(trials: str, ship: str) -> list[str]:
+    """What to say, as a sentence goes on behind a colon, where trials are not of the ship they are compared with.
+
+    trials  id of the ship they are of, "" where they do not say
+    ship    id of the model's
+    """
+    return [f"the trials are of '{trials}', the model is of '{ship}'"] if trials and trials != ship else []
+
+
 def odd_in_words(odd: Mapping[str, str]) -> str:
     """What is odd, by trial, in words: what differs in its numbers alone once, of the first of those trials."""
     alike: dict[str, list[str]] = {}
