@@ -128,6 +128,10 @@ def brief(value: object) -> str:
             is_time = type(x).__module__ == "datetime"  # as TOML has it
             return str(x) if is_time else super().repr1(x, level)
 
+        def repr_instance(self, x: object, level: int) -> str:
+            text = super().repr_instance(x, level)
+            return f"<{kind_of(x)}>" if "\n" in text else text  # such as a table, of which a piece says nothing
+
     short = Short()
     short.maxlevel, short.maxstring, short.maxother = 3, 80, 80
     short.maxlist = short.maxdict = short.maxtuple = 8

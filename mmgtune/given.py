@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
@@ -99,6 +99,8 @@ def _several(given: object) -> list[Trial | IndexTrial]:
     fix = "give a TrialSet, a Trial, a list of these, a path or a bundled name; load_trials(NAME) reads a set"
     if isinstance(given, ShipProfile):
         fix = "give the ship first, then the trials"
+    if not isinstance(given, Mapping) and hasattr(given, "keys"):
+        fix += ", trial_of(TABLE, ID) makes a trial of a table; a table of orders is for predict(SHIP, TABLE)"
     if others and all(_is_folder(one) for one in others):
         fix = f"a set is given by itself: {brief(others[0])}; in a list stand trials and their files"
     elif others and all(isinstance(one, str) for one in others) and isinstance(given, Sequence):

@@ -8,38 +8,52 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..manoeuvres.named import BY_KEY
+from ..physics.quantities import STATES
+from ..predicting.result import END
 from .ships import measured
 from .view import Line, Row, View
 
 if TYPE_CHECKING:
     from ..heading_keeping import HeadingStudy
     from ..planning import TrialPlan
-    from ..predicting import Predicted
+    from ..predicting import Foretold, Predicted
 
 PARTICLES = 40
 """Particles of a prediction that are drawn."""
 
 
 def prediction(result: Predicted) -> View:
-    """A row a manoeuvre and index: the middle of the particles and the band that holds the share asked for."""
+    """A row a manoeuvre and index: the middle of the particles and the band that holds the share asked for.
+
+    Of lists of orders, and of runs that show no index, also where the ship is at the end.
+    """
     rows: list[Row] = []
     for run in result.runs:
         for key in run.indices:
-            band = run.index(key, result.level)
-            ends = {"low": band.low, "high": band.high} if result.has_band else {}
-            rows.append(
-                {
-                    "manoeuvre": run.id,
-                    "index": BY_KEY[key].words,
-                    "median" if result.has_band else "predicted": band.median,
-                    **ends,
-                    "unit": BY_KEY[key].unit,
-                    "measured": run.measured.get(key),
-                    **({"reached": f"{band.reached} of {band.particles}"} if result.has_band else {}),
-                }
-            )
+            known, band = BY_KEY[key], run.index(key, result.level)
+            rows.append(_banded(result, run, known.words, known.unit, band.to_dict(), run.measured.get(key)))
+        if run.manoeuvre == "orders" or not run.indices:
+            for (name, (words, unit, factor)), end in zip(END.items(), run.end(result.level), strict=True):
+                last = factor * run.trial.motion[-1, STATES.index(name)] if run.trial else np.nan
+                known_last = float(last) if np.isfinite(last) else None
+                rows.append(_banded(result, run, f"{words} at the end", unit, end, known_last))
     says = [f"Between low and high lie {result.options.level:g} % of the particles."] if result.has_band else []
     return View(repr(result), says, rows, result.notes, spare=("reached",), motions=lambda: _foretold(result))
+
+
+def _banded(
+    result: Predicted, run: Foretold, words: str, unit: str, band: Mapping[str, Any], measured: float | None
+) -> Row:
+    """A number of a run as particles have it."""
+    return {
+        "manoeuvre": run.id,
+        "index": words,
+        "median" if result.has_band else "predicted": band["median"],
+        **({"low": band["low"], "high": band["high"]} if result.has_band else {}),
+        "unit": unit,
+        "measured": measured,
+        **({"reached": f"{band['reached']} of {band['particles']}"} if result.has_band else {}),
+    }
 
 
 def _foretold(result: Predicted) -> Mapping[str, list[Line]]:

@@ -16,7 +16,7 @@ from ..backends import get_backend
 from ..bands import IndexBand, index_band
 from ..displayed import Displayed
 from ..documents import write_json
-from ..errors import OptionError, Problem, ProfileError, must_be_a
+from ..errors import OptionError, Problem, ProfileError, kind_of, must_be_a
 from ..files import path_of, refuse_existing
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
@@ -215,7 +215,8 @@ def _particles(model: str | Path | Particles) -> Particles:
         return model
     found = named_ship(model)
     if not isinstance(found, ParticlePredictor) or found.particles is None:
-        what = f"'{model}' has no particles of coefficients"
+        called = f"'{model}'" if isinstance(model, str | Path) else kind_of(model)
+        what = f"{called} has no particles of coefficients"
         fix = "draw them with mmgtune posterior, and name its run folder"
         raise OptionError(Problem(what, "model", "only they say what is open", fix))
     return found.particles

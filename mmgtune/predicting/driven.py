@@ -33,18 +33,18 @@ def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Fo
     """
     _possible(predictor, orders)
     step = sample_of(predictor.L_pp, approach.speed)
-    limits.ORDERS_STEPS.hold(orders.duration / step * predictor.n_members, str(orders.path), OptionError)
+    limits.ORDERS_STEPS.hold(orders.duration / step * predictor.n_members, orders.where, OptionError)
     t, controls = orders.carried_out(tuple(predictor.inputs), actuators_of(predictor), approach.n, step)
     initial = np.array([0.0, 0.0, 0.0, approach.speed, 0.0, 0.0])
     found = predicted(predictor, pad([t], [controls], [initial]))
     states, diverged = found.states[0], found.diverged[0]
     motions = [
-        Motion(orders.path.stem, t, one, controls, bool(lost), tuple(predictor.inputs), k)
+        Motion(orders.id, t, one, controls, bool(lost), tuple(predictor.inputs), k)
         for k, (one, lost) in enumerate(zip(states, diverged, strict=True))
     ]
     indices = of_records([_shown(motion, predictor.L_pp) for motion in motions])
-    words = f"{len(orders.t) - 1} orders of {orders.path.name}"
-    return Foretold(orders.path.stem, "orders", words, t, states, diverged, indices, approach=approach)
+    words = f"{len(orders.t) - 1} orders of {orders.source}"
+    return Foretold(orders.id, "orders", words, t, states, diverged, indices, approach=approach)
 
 
 def _possible(predictor: Predictor, orders: OrderList) -> None:
@@ -52,7 +52,7 @@ def _possible(predictor: Predictor, orders: OrderList) -> None:
     profile = profile_behind(predictor)
     for name, gear in zip(predictor.inputs, actuators_of(predictor), strict=True):
         ordered = orders.ordered.get(name, np.zeros(0))
-        where = f"{orders.path}, column '{name}'"
+        where = f"{orders.where}, column '{name}'"
         hold_reached(name, gear, ordered, where)
         astern = INPUTS[name].role == "propeller" and bool((ordered < 0.0).any())
         if profile is not None and astern and (problem := no_reverse(profile, where, "order none below 0")):

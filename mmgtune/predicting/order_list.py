@@ -6,13 +6,14 @@
     300, 0, 0
 
 An order holds until the next; the last row says when the prediction ends.  An empty cell leaves an input alone.
+``order_table`` reads the same from a table in memory.
 """
 
 from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,11 +33,16 @@ TIME = "t"
 class OrderList:
     """Orders as they were read.
 
+    id       what a run of them is called
+    where    they were given: the file, or the argument
+    source   what they are from, in words
     t        (n_orders,) [s], from 0, strictly increasing
     ordered  (n_orders,) by input, in SI; NaN where an input is left alone
     """
 
-    path: Path
+    id: str
+    where: str
+    source: str
     t: FloatArray
     ordered: dict[str, FloatArray]
 
@@ -102,26 +108,44 @@ def read_orders(path: Path, inputs: Sequence[str]) -> OrderList:
         raise OptionError(Problem("the list of orders is no CSV file", str(path), reason(error), fix)) from None
     if len(rows) < 3:
         why = "a header, an order and a last row with the time of the end are needed"
-        raise OptionError(Problem("the list of orders is too short", str(path), why, f"write {_example(inputs)}"))
-    names, factors = _header(rows[0][1], inputs, f"{path}, line {rows[0][0]}")
+        raise OptionError(Problem("the list of orders is too short", str(path), why, f"write {example(inputs)}"))
+    names, factors = header(rows[0][1], inputs, f"{path}, line {rows[0][0]}")
     columns = np.array([_cells(cells, names, f"{path}, line {k}") for k, cells in rows[1:]]).T
     ordered = {name: factor * column for name, factor, column in zip(names, factors, columns, strict=True)}
+    t, ordered = held_possible(ordered, lambda k: f"{path}, line {rows[1 + k][0]}")
+    return OrderList(path.stem, str(path), path.name, t, ordered)
+
+
+def held_possible(
+    columns: Mapping[str, FloatArray], row: Callable[[int], str]
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Times from the first on (n_orders,) and what is ordered by input.
+
+    columns  (n_orders,) of time and inputs, in SI; NaN where an input is left alone
+    row      where a row stands, by its number from 0
+    Raises OptionError for what no ship is ordered, and for times that do not increase.
+    """
+    ordered = dict(columns)
     t = ordered.pop(TIME)
     for name, column in {TIME: t, **ordered}.items():
         unit, most = _unit(name), LARGEST_RUDDER if name in RUDDERS else LARGEST[_unit(name)]
         for k in np.flatnonzero(np.abs(column) > most)[:1]:
-            where = f"{path}, line {rows[1 + k][0]}, column '{name}'"
+            where = f"{row(k)}, column '{name}'"
             why = f"no ship is ordered more than {most:g} {unit}" if name != TIME else f"the limit is {most:g} s"
             raise OptionError(Problem(f"{name} is {column[k]:g} {unit}", where, why, "correct the number or its unit"))
     late = [k for k in range(1, len(t)) if not t[k] - t[k - 1] > SHORTEST_STEP]
     if late or math.isnan(t[0]):
-        where = f"{path}, line {rows[1 + (late[0] if late else 0)][0]}, column 't'"
+        where = f"{row(late[0] if late else 0)}, column 't'"
         raise OptionError(Problem("times of orders do not increase", where, fix="write them in order, one a row"))
-    return OrderList(path, t - t[0], ordered)
+    return t - t[0], ordered
 
 
-def _header(cells: Sequence[str], inputs: Sequence[str], where: str) -> tuple[list[str], list[float]]:
-    """Names of the columns and the factors to SI."""
+def header(cells: Sequence[str], inputs: Sequence[str], where: str) -> tuple[list[str], list[float]]:
+    """Names of the columns and the factors to SI.
+
+    where  they stand
+    Raises OptionError with everything that is wrong in them.
+    """
     names, factors, problems = [], [], []
     for cell in cells:
         name, opening, rest = cell.partition("[")
@@ -144,7 +168,7 @@ def _header(cells: Sequence[str], inputs: Sequence[str], where: str) -> tuple[li
         factors.append(units.factors(si).get(unit, 1.0) if si else 1.0)
     if not problems and (TIME not in names or len(names) < 2):
         what = "there is no column 't'" if TIME not in names else "nothing is ordered"
-        problems.append(Problem(what, where, fix=f"write {_example(inputs)}"))
+        problems.append(Problem(what, where, fix=f"write {example(inputs)}"))
     if problems:
         raise OptionError(*problems)
     return names, factors
@@ -173,7 +197,7 @@ def _cells(cells: Sequence[str], names: Sequence[str], where: str) -> list[float
     return found
 
 
-def _example(inputs: Sequence[str]) -> str:
+def example(inputs: Sequence[str]) -> str:
     """How the header of a list for these inputs is written."""
     shown = [f"{name} [{units.shown_in(INPUTS[name].unit)[0]}]" for name in inputs]
     return f"a header such as '{', '.join(['t [s]', *shown])}' and a row an order below it"

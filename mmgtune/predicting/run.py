@@ -23,20 +23,22 @@ from ..validating import sigma_of
 from .asked import actuators_of, approach_of, asked
 from .driven import on_orders, on_trials
 from .order_list import read_orders
+from .order_table import Columns, orders_in
 from .result import Foretold, Predicted
 from .steering import sail
 
 
 def predict(
     model: ShipGiven | Model | Predictor,
-    orders: str | Path | TrialSet | Sequence[Trial] | None = None,
+    orders: Columns | TrialsGiven | None = None,
     trials: TrialsGiven | None = None,
     options: PredictOptions = PredictOptions(),
 ) -> Predicted:
     """Predict manoeuvres, or trials with their own inputs, by as many particles as the model has or draws.
 
     model   a profile, network, hybrid or ensemble: an object, a path or a bundled name
-    orders  a CSV file with a row an order, see ``order_list``; trials are understood here too
+    orders  a CSV file with a row an order, see ``order_list``, or the same as a table: a DataFrame or a dict of columns
+            "t [s]", "delta [deg]"; trials are understood here too
     trials  objects, a path or a bundled name; their measured motion is what the bands are held against
     With neither the manoeuvres of the options are predicted, by default hard turns and zigzags to both sides.
 
@@ -46,7 +48,7 @@ def predict(
     """
     must_be(options, PredictOptions)
     began = time.perf_counter()
-    if trials is None and orders is not None and _are_trials(orders):
+    if trials is None and orders is not None and not isinstance(orders, Columns) and _are_trials(orders):
         orders, trials = None, orders
     _agree(orders, trials, options)
     integrator = options.make_integrator()
@@ -60,7 +62,8 @@ def predict(
         sigma = _sigma(given, options)
         runs = tuple(on_trials(several, given, options.restart))
     elif orders is not None:
-        listed = read_orders(Path(str(orders)), tuple(several.inputs))
+        of = tuple(several.inputs)
+        listed = orders_in(orders, of) if isinstance(orders, Columns) else read_orders(Path(str(orders)), of)
         runs = (on_orders(several, listed, approach_of(several, options)),)
     else:
         approach = approach_of(several, options)
@@ -83,7 +86,7 @@ def predict(
     return Predicted(name, several, runs, options, isinstance(whole, Uncertain), sigma, tuple(notes), spent)
 
 
-def _are_trials(given: str | Path | TrialSet | Sequence[Trial]) -> bool:
+def _are_trials(given: TrialsGiven) -> bool:
     """Whether what stands in the place of orders is trials: objects, a folder, a trial file or a bundled name."""
     if not isinstance(given, (str, Path)):
         return True

@@ -36,14 +36,14 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         what, fix = f"a trial has no fact '{unknown[0]}'", f"known here: {', '.join(FACTS)}"
         raise TrialError(Problem(what, unknown[0], "what a trial is beside its columns has a name", fix))
     where = id if isinstance(id, str) else brief(id)
-    table = _with_time(table)
+    table = with_time(table)
     if not hasattr(table, "keys"):
         fix = "give a DataFrame, or a dict of arrays"
         raise TrialError(Problem("this is no table", "table", f"{kind_of(table)} has no named columns", fix))
     columns: dict[str, FloatArray] = {}
     ignored, words = [], []
     for given in table.keys():  # noqa: SIM118  the names of a DataFrame, and of a mapping
-        name, column = _named(str(given)), _numbers(table[given])
+        name, column = _named(str(given)), numbers_of(table[given])
         if name in columns:
             why, fix = f"'{given}' is '{name}', and a trial has one of it", "leave one of the two out"
             raise TrialError(Problem(f"column '{name}' is there twice", where, why, fix))
@@ -71,7 +71,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     return Trial(id=id, **named, **fields_of(columns), ignored=tuple(ignored))
 
 
-def _with_time(table: Any) -> Any:
+def with_time(table: Any) -> Any:
     """The table with its index for its time, where that is called so or holds dates and times; else as it is."""
     index: Any = getattr(table, "index", None)
     time, dated = str(getattr(index, "name", None)), getattr(getattr(index, "dtype", None), "kind", "") in ("M", "m")
@@ -103,7 +103,7 @@ def _no_numbers(name: str, column: Any, where: str) -> Problem:
     return Problem(f"column '{name}' holds no numbers", where, why, fix)
 
 
-def _numbers(column: Any) -> FloatArray | None:
+def numbers_of(column: Any) -> FloatArray | None:
     """A column (n_samples,) as numbers, NaN where it is masked, None or what pandas writes as <NA>; None where it holds
     anything else, such as words or dates."""
     try:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from mmgtune.errors import OptionError
 from mmgtune.options import PredictOptions
+from mmgtune.planning import plan_trial
 from mmgtune.predicting import predict
 from mmgtune.predicting.order_list import read_orders
+from mmgtune.predicting.order_table import orders_in
 from mmgtune.profile import Actuator
+from mmgtune.simulating import simulate
+from mmgtune.trial import load_trials, windows
 from mmgtune.units import DEG
 
 INPUTS = ("n", "delta")
@@ -100,3 +105,89 @@ def test_files_that_are_no_list(suzaku, tmp_path):
     (tmp_path / "orders.csv").write_bytes(b"\xff\xfe\x00t")
     with pytest.raises(OptionError, match="cannot be read"):
         predict(suzaku, tmp_path / "orders.csv")
+
+
+BERTHING = {"t [min]": [1, 2, 3, 4], "delta [deg]": [0, 35, None, np.nan], "n [rpm]": [60.0, None, -30.0, None]}
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        BERTHING,
+        pd.DataFrame(BERTHING),
+        pd.DataFrame(BERTHING).set_index("t [min]"),
+        pd.DataFrame(BERTHING).set_index(pd.to_timedelta([1, 2, 3, 4], unit="min")).drop(columns="t [min]"),
+    ],
+    ids=["dict", "frame", "time as index", "times as index"],
+)
+def test_a_table_says_what_the_file_does(table, tmp_path):
+    found = orders_in(table, INPUTS)
+    read = read_orders(listed(tmp_path, "t [min], delta [deg], n [rpm]\n1, 0, 60\n2, 35,\n3, , -30\n4,,\n"), INPUTS)
+    np.testing.assert_array_equal(found.t, read.t)
+    assert list(found.ordered) == list(read.ordered)
+    for name, ordered in found.ordered.items():
+        np.testing.assert_array_equal(ordered, read.ordered[name])
+
+
+ORDERS = pd.DataFrame({"t [s]": [0, 20, 80, 140], "delta [deg]": [0, 35, -10, 0], "n [rpm]": [106, 106, 50, 50]})
+
+
+def test_a_table_is_predicted_as_the_file_is_and_its_frame_says_where_she_ends(suzaku, tmp_path):
+    ORDERS.to_csv(tmp_path / "orders.csv", index=False)
+    read, found = predict(suzaku, tmp_path / "orders.csv"), predict(suzaku, ORDERS)
+    frame = found.to_frame()
+    assert frame.equals(read.to_frame())
+    (run,) = found.runs
+    assert (run.id, run.words) == ("orders", "3 orders of a table")
+    assert frame["index"].tolist() == [f"{what} at the end" for what in ("north", "east", "heading", "speed")]
+    assert frame["unit"].tolist() == ["m", "m", "deg", "m/s"]
+    np.testing.assert_allclose(frame["predicted"], run.states[0, -1, :4] / [1.0, 1.0, DEG, 1.0], rtol=1e-12)
+    assert "north at the end" in found.summary()
+
+
+def test_a_piece_of_a_trial_that_shows_no_index_ends_beside_what_was_measured(suzaku):
+    piece = windows(load_trials("suzaku").trials["turn_p35"], 30.0)[2]
+    frame = predict(suzaku, [piece]).to_frame().set_index("index")
+    assert frame.loc["north at the end", "measured"] == pytest.approx(piece.x[-1])
+    assert frame.loc["heading at the end", "measured"] == pytest.approx(np.degrees(piece.psi[-1]))
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        (ORDERS.drop(columns="t [s]"), "there is no column 't' (orders)"),
+        (ORDERS[["t [s]"]], "nothing is ordered"),
+        (ORDERS.rename(columns={"delta [deg]": "delta"}), "write 'delta [deg]' or 'delta [rad]'"),
+        (ORDERS.rename(columns={"delta [deg]": "rudder [deg]"}), "nothing is driven by 'rudder'"),
+        (ORDERS.iloc[:1], "too short"),
+        (ORDERS.iloc[::-1], "do not increase (orders, row 1, column 't')"),
+        (ORDERS.assign(**{"delta [deg]": "hard over"}), "column 'delta' holds no numbers"),
+        (ORDERS.assign(**{"delta [deg]": np.inf}), "(orders, row 0, column 'delta')"),
+        (ORDERS.assign(**{"delta [deg]": 60.0}), "it goes from -45 to 45"),
+        (ORDERS.assign(**{"t [s]": [0, None, 2, 3]}), "the time is missing (orders, row 1, column 't')"),
+        (ORDERS.assign(**{"t [s]": [0, 1, 2, 1e9]}), "too many"),
+        ({**ORDERS.to_dict("list"), "n [rpm]": [1]}, "'n' has 1 rows, 't' 4"),
+        ({}, "there is no column 't'"),
+    ],
+)
+def test_what_is_wrong_in_a_table_is_said_in_short(suzaku, table, said):
+    with pytest.raises(OptionError) as error:
+        predict(suzaku, table)
+    assert said in str(error.value)
+    assert max(map(len, str(error.value).splitlines())) < 160
+
+
+def test_a_table_elsewhere_is_refused_without_its_text(suzaku):
+    for call in (
+        lambda: simulate(suzaku, ORDERS),
+        lambda: predict(suzaku, trials=ORDERS),
+        lambda: simulate(ORDERS),
+        lambda: plan_trial(ORDERS, "tactical diameter, turn -35"),
+    ):
+        with pytest.raises(OptionError, match="a DataFrame ") as error:
+            call()
+        assert "106" not in str(error.value)
+    with pytest.raises(OptionError, match="a table of orders is for predict"):
+        simulate(suzaku, ORDERS)
+    with pytest.raises(OptionError, match=r"^a ShipProfile has no particles of coefficients \(model\)"):
+        plan_trial(suzaku.profile, "tactical diameter, turn -35")
