@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from mmgtune.report import render
+from mmgtune.report import html, render
+from mmgtune.report.blocks import Cell, Page, Section, Table
 from tests.browser import chromium
 
 from . import fake_run
@@ -117,6 +118,48 @@ def test_colours_of_text_can_be_read(browser: Any, fit_folder: Path, scheme: str
         )
         paper = colors.pop()
         assert min(contrast(color, paper) for color in colors) >= 4.5
+
+
+THEMES = {"light": ("#ffffff", "#f5f5f5", "#212121"), "dark": ("#111111", "#212121", "#e0e0e0")}
+"""Paper of notebooks, every second row of their tables, and ink, as JupyterLab has them."""
+
+SEEN = """() => {
+  const canvas = document.createElement("canvas").getContext("2d");
+  const seen = (color, paper) => {
+    for (const layer of [paper, color]) { canvas.fillStyle = layer; canvas.fillRect(0, 0, 1, 1); }
+    return `rgb(${canvas.getImageData(0, 0, 1, 1).data.slice(0, 3).join(", ")})`;
+  };
+  const style = selector => getComputedStyle(document.querySelector(selector));
+  const probe = document.querySelector(".mmgtune").appendChild(document.createElement("i"));
+  const names = ["ink", "muted", "link", "good", "bad", "flag", "before", "after", "third"];
+  const papers = ["tbody tr:nth-child(odd)", "tbody tr:nth-child(even)"].map(row => style(row).backgroundColor);
+  const inks = names.map(name => { probe.style.color = `var(--${name})`; return getComputedStyle(probe).color; });
+  const pairs = inks.flatMap(ink => papers.map(paper => [seen(ink, paper), seen(paper, paper)]));
+  return { pairs, paper: style(".mmgtune").backgroundColor };
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("theme", THEMES)
+def test_a_fragment_can_be_read_in_a_notebook_whatever_the_system_prefers(
+    browser: Any, theme: str, scheme: str
+) -> None:
+    rows = tuple((Cell(name), Cell("1", "good")) for name in ("one", "two"))
+    table = Table("rows", "", ("name", "value"), rows)
+    fragment = html.fragment(Page("A result", "", "A result", sections=(Section("", "", (table,)),)))
+    paper, second, ink = THEMES[theme]
+    rules = (
+        f"body {{ background: {paper}; color: {ink}; }} tbody tr {{ background: {paper}; }}"
+        f" tbody tr:nth-child(even) {{ background: {second}; }}"
+    )
+    context = browser.new_context(offline=True, color_scheme=scheme)
+    page = context.new_page()
+    page.set_content(f"<!doctype html><style>{rules}</style>{fragment}")
+    found = page.evaluate(SEEN)
+    context.close()
+    assert found["paper"] == "rgba(0, 0, 0, 0)"
+    assert len(found["pairs"]) == 18
+    assert min(contrast(*pair) for pair in found["pairs"]) >= 4.5
 
 
 def test_dragging_across_a_history_rescales_all_and_comes_back(browser: Any, fit_folder: Path) -> None:

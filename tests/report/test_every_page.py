@@ -189,6 +189,7 @@ def test_fragments_for_notebooks(runs: dict[str, Path]) -> None:
         text = html.fragment(kind.build(run))
         assert text.startswith('<div class="mmgtune">')
         assert "<script" not in text
+        assert "prefers-color-scheme" not in text  # a notebook has a theme of its own
         assert "<h1>" in text
         assert text.count("<div") == text.count("</div>")
 
