@@ -21,6 +21,7 @@ from .estimating import estimate as estimate
 from .estimating import read_particulars as read_particulars
 from .evaluation import TrialRecord as TrialRecord
 from .evaluation import evaluate as evaluate
+from .fitting import ComparedTrials as ComparedTrials
 from .fitting import FitResult as FitResult
 from .fitting import LeftOut as LeftOut
 from .fitting import SweepResult as SweepResult

@@ -2,6 +2,7 @@
 
 from ..hooks import Hooks
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
+from .comparison import ComparedTrials, TrialComparison
 from .folder import write_document, write_run
 from .information import Information
 from .informing import information_of
@@ -18,6 +19,7 @@ __all__ = [
     "FEWEST",
     "METHODS",
     "BandsLeftOut",
+    "ComparedTrials",
     "FitOptions",
     "FitResult",
     "Hooks",
@@ -28,6 +30,7 @@ __all__ = [
     "SisterClass",
     "SweepOptions",
     "SweepResult",
+    "TrialComparison",
     "fit",
     "in_pieces",
     "information_of",

@@ -10,19 +10,23 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
-from ..displayed import inert
+from ..displayed import Plotted, inert
 from ..documents import finite
 from ..evaluation import TrialRecord, records
 from ..motions import Motion
 from ..objective import Objective
+from ..phrases import counted
 from ..trial import Trial
 from .least_squares import fit_offsets
 from .problem import FitProblem
 
+ROLES = ("tune", "test", "other", "left-out")
+WHICH = ("before", "after")
+
 
 @dataclass(frozen=True, eq=False)
 class TrialComparison:
-    """One trial: its records "before" and "after"; ``role`` is "tune", "test", "other" or "left-out"."""
+    """One trial: its records "before" and "after"; ``role`` is one of ``ROLES``."""
 
     trial: Trial
     role: str
@@ -81,6 +85,17 @@ class TrialComparison:
             },
             "indices": self.indices,
         }
+
+
+class ComparedTrials(tuple[TrialComparison, ...], Plotted):
+    """Trials before and after, one by one; together a table: how far off track and heading each is, and its J."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        """In a line."""
+        of = [f"{sum(one.role == role for one in self)} {role}" for role in dict.fromkeys(one.role for one in self)]
+        return f"ComparedTrials({', '.join([counted(len(self), 'trial'), *of])})"
 
 
 def compare(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +37,7 @@ from ..stated import IndexComparison, compare_stated
 from ..tables import write_table
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, another_ship, oddities
-from .comparison import TrialComparison
+from .comparison import ComparedTrials, TrialComparison
 from .extending import held_words, settled, tune_trials
 from .folder import motions_table
 from .journal import finished, journalled
@@ -116,7 +116,8 @@ class LeftOut(Displayed):
     weight   of what is known beforehand, found with all runs; None where J is all
     warnings what a reader must know first; doubts: which of the profile's numbers may be wrong
     bands    of each part from the other runs, where asked for: ``posterior.leave_out_with_bands``
-    compared each tune trial with the profile's values ("before") and with those fitted without it ("after")
+    compared each tune trial with the profile's values ("before") and with those fitted without it ("after");
+             ``compared.to_frame()`` has a row a trial
     inputs   names of what drives the ship
     """
 
@@ -140,7 +141,7 @@ class LeftOut(Displayed):
     warnings: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
     bands: BandsLeftOut | None = None
-    compared: tuple[TrialComparison, ...] = ()
+    compared: ComparedTrials = field(default_factory=ComparedTrials)
     inputs: tuple[str, ...] = ()
 
     @property
@@ -318,7 +319,7 @@ def _leave_out(
         model.L_pp,
         tuple(_warnings(model, fit.problem.box.names, whole, asked)),
         tuple(profile.doubts()),
-        compared=tuple(
+        compared=ComparedTrials(
             TrialComparison(trial, "left-out", {"before": given[trial.id], "after": left[trial.id]}) for trial in seen
         ),
         inputs=tuple(one.name for one in profile.arrangement.inputs),

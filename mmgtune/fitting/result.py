@@ -13,6 +13,7 @@ from ..circumstances import notes_on
 from ..components import split_name
 from ..displayed import Plotted
 from ..documents import finite, finite_values
+from ..errors import OptionError, Problem, among, brief
 from ..first_states import MUCH
 from ..first_states import in_words as noise_in_words
 from ..model import Model, Tie
@@ -26,7 +27,7 @@ from ..trial import Coverage, another_ship
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
-from .comparison import TrialComparison, off_in_words, total
+from .comparison import ROLES, WHICH, ComparedTrials, off_in_words, total
 from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
@@ -89,6 +90,7 @@ class FitResult(Plotted):
     unit         (n_targets,) position of the tuned values in the box
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
     beside       terms of the objective beside J; None where there are none
+    compared     every trial before and after; ``compared.to_frame()`` has a row a trial
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
     J_of_noise    J that the noise of first samples alone would bring a faultless model to, by role of the trials;
                   empty where initial states are estimated
@@ -108,7 +110,7 @@ class FitResult(Plotted):
     J_free_start: float | None
     J_of_noise: Mapping[str, float]
     beside: Beside | None
-    compared: tuple[TrialComparison, ...]
+    compared: ComparedTrials
     stated: tuple[IndexComparison, ...]
     restarts: tuple[Restart, ...]
     starts: tuple[LeastSquaresResult, ...]
@@ -188,7 +190,13 @@ class FitResult(Plotted):
         )
 
     def J_of(self, role: str, which: str) -> float | None:
-        """J over the "tune" or "test" trials, "before" or "after"; None without such trials."""
+        """J over the "tune" or "test" trials, "before" or "after"; None without such trials, and if it is not finite.
+
+        Trials that do neither are "other".  Raises OptionError for words that there are not.
+        """
+        for word, name, known in ((role, "role", ROLES), (which, "which", WHICH)):
+            if word not in known:
+                raise OptionError(Problem(f"there is no J of {brief(word)}", name, **among(word, known)))
         return finite(total(self.compared, role, which))
 
     @property

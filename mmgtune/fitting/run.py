@@ -27,7 +27,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, oddities
 from .certificate import certify
 from .checkpoint import Checkpoint
-from .comparison import compare, total
+from .comparison import ComparedTrials, compare, total
 from .extending import settled
 from .identifiability import analyse
 from .journal import journalled
@@ -168,7 +168,7 @@ def _looked_at(profile: ShipProfile, posed: _Posed, best: Optimum, provenance: d
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in (*trials.trials, *trials.stated)}
     everything = setting.problem(tuple(trials.trials)) if trials.trials else posed.plain
-    compared = tuple(compare(everything, list(trials.trials.values()), setting.objective, roles, before, unit))
+    compared = ComparedTrials(compare(everything, list(trials.trials.values()), setting.objective, roles, before, unit))
     from_noise = not setting.estimated and bool(trials.tune)
     return FitResult(
         profile=profile,

@@ -7,17 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..documents import finite
 from ..units import DIMENSIONLESS, NORMAL_95
 from .ships import measured, simulated
 from .view import Line, Room, Row, View
 
 if TYPE_CHECKING:
     from ..fitting import FitResult, LeftOut, SweepResult
-    from ..fitting.comparison import TrialComparison
+    from ..fitting.comparison import ComparedTrials, TrialComparison
     from ..posterior import Posterior
 
 MOST_TOLD = 20
 """Numbers of a posterior that are drawn."""
+
+SPARE = ("samples", "manoeuvre", "diverged", "off heading before [deg]", "off heading after [deg]")
+"""Columns of the table of trials that text leaves out first."""
 
 BOUND = {"low": "lower", "high": "upper"}
 
@@ -55,6 +59,27 @@ def rooms(result: FitResult) -> list[Room]:
         reach = NORMAL_95 * row["stderr"] / size if row["stderr"] is not None and size > 0.0 else None
         found.append(Room(row["name"], row["value"], row["position"], reach, row["at_bound"] or "", row["determined"]))
     return found
+
+
+def trials(result: ComparedTrials) -> View:
+    """A row a trial: how far off it is, before and after."""
+    return View(repr(result), [], [_of_trial(one) for one in result], spare=SPARE, motions=lambda: compared(result))
+
+
+def _of_trial(one: TrialComparison) -> Row:
+    """Root mean squares off track and heading, J, and whether a simulation diverged; None where there is no number."""
+    off = {which: one.off(which) for which in ("before", "after")}
+    lost = [which for which in off if one.motions[which].diverged]
+    return {
+        "trial": one.trial.id,
+        "role": one.role,
+        "manoeuvre": one.trial.manoeuvre,
+        "samples": one.trial.n_samples,
+        **{f"off track {which} [m]": finite(of[0]) for which, of in off.items()},
+        **{f"off heading {which} [deg]": finite(of[1]) for which, of in off.items()},
+        **{f"J {which}": finite(one.J[which]) for which in off},
+        "diverged": ", ".join(lost),
+    }
 
 
 def compared(trials: Sequence[TrialComparison]) -> Mapping[str, list[Line]]:

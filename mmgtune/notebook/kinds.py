@@ -35,6 +35,7 @@ KINDS: Mapping[str, Callable[[Any], View]] = {
     "Simulated": ships.simulation,
     "TrialRecord": ships.record,
     "FitResult": fits.fit,
+    "ComparedTrials": fits.trials,
     "SweepResult": fits.sweep,
     "LeftOut": fits.left_out,
     "Posterior": fits.posterior,

@@ -13,6 +13,7 @@ import pytest
 
 import mmgtune
 from mmgtune.errors import OptionError, TrialError
+from mmgtune.fitting.comparison import ComparedTrials
 from mmgtune.fleet import FleetRun
 from mmgtune.model import Model
 from mmgtune.notebook.kinds import KINDS
@@ -198,6 +199,58 @@ def test_hostile_names_stay_words(hostile, plt):
         for ax in np.ravel(one.plot.tracks()):
             ax.figure.draw_without_rendering()  # what looks like mathematics would raise
         one.plot.histories(HOSTILE, channels=("psi",))[0].figure.draw_without_rendering()
+
+
+def test_the_trials_of_a_fit_are_a_table(fitted, trials, plt):
+    compared = fitted.compared
+    assert repr(compared) == "ComparedTrials(10 trials, 4 test, 4 tune, 2 other)"
+    frame = compared.to_frame()
+    assert frame["trial"].tolist() == list(trials.trials)
+    assert frame["role"].tolist() == [trials.role(id) for id in trials.trials]
+    for role in ("tune", "test", "other"):
+        for which in ("before", "after"):
+            J = frame.loc[frame["role"] == role, f"J {which}"].sum()
+            assert pytest.approx(fitted.J_of(role, which), rel=1e-12) == J
+    for one, row in zip(compared, frame.to_dict("records"), strict=True):
+        assert one.off("before") == (row["off track before [m]"], row["off heading before [deg]"])
+        assert one.off("after") == (row["off track after [m]"], row["off heading after [deg]"])
+    assert not frame["diverged"].any()
+    assert max(map(len, compared.summary().splitlines())) <= 80
+    assert {"table", "td"} <= Tags(compared._repr_html_()).tags
+    assert len(np.ravel(compared.plot.tracks("turn_p35", "zigzag_10"))) == 2
+
+
+def test_a_trial_on_which_the_model_diverges_has_no_numbers_there(fitted):
+    one, *others = fitted.compared
+    lost = replace(one.records["after"], motion=replace(one.motions["after"], diverged=True))
+    frame = ComparedTrials([replace(one, records={**one.records, "after": lost}), *others]).to_frame()
+    assert frame["diverged"].tolist() == ["after"] + [""] * 9
+    assert frame.loc[0, ["off track after [m]", "off heading after [deg]", "J after"]].isna().all()
+    assert np.isfinite(frame.loc[0, "J before"])
+    assert ComparedTrials().to_frame().empty
+    assert repr(ComparedTrials()) == "ComparedTrials(0 trials)"
+
+
+def test_left_out_trials_are_a_table_too():
+    options = mmgtune.LeaveOutOptions(a_r=0.5, starts=1, targets=("hull.R_0",))
+    left_out = mmgtune.leave_out("suzaku", "suzaku", options).compared
+    assert left_out.to_frame()["role"].tolist() == ["left-out"] * 4
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("tset", "after"), "tune, test, other, left-out"),
+        (("validation", "after"), "tune, test, other, left-out"),
+        (("test", "aftr"), "before, after"),
+        ((None, "after"), "tune, test, other, left-out"),
+    ],
+)
+def test_J_of_other_words_is_refused_with_those_there_are(fitted, words, said):
+    with pytest.raises(OptionError, match="there is no J of") as error:
+        fitted.J_of(*words)
+    assert said in str(error.value)
+    assert "fix: " in str(error.value)
 
 
 def test_pictures_hold_what_they_are_of(fitted, trials, plt):
