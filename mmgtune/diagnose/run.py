@@ -282,7 +282,12 @@ def _most(number: int, trials: Mapping[str, Trial]) -> str:
     """So many of the trials, in words, where they are most of them; else ""."""
     if 2 * number <= len(trials):
         return ""
-    return f"{number} of {len(trials)} trials" if len(trials) > 1 else "the trial"
+    return f"{number} of {len(trials)} {_pieces(trials)}s" if len(trials) > 1 else f"the {_pieces(trials)}"
+
+
+def _pieces(trials: Mapping[str, Trial]) -> str:
+    """What they are: of voyages windows."""
+    return "window" if any(trial.part_of for trial in trials.values()) else "trial"
 
 
 def _derived(trials: Mapping[str, Trial]) -> list[str]:
@@ -292,7 +297,7 @@ def _derived(trials: Mapping[str, Trial]) -> list[str]:
         return []
     n = sum(bool(trial.derived) for trial in trials.values())
     was, does = ("was", "does") if len(names) == 1 else ("were", "do")
-    of = f"{n} of {len(trials)} trials"
+    of = f"{n} of {len(trials)} {_pieces(trials)}s"
     return [f"{', '.join(names)} {was} derived from other channels in {of}, not measured, and {does} not count there."]
 
 

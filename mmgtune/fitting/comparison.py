@@ -15,7 +15,7 @@ from ..documents import finite
 from ..evaluation import TrialRecord, records
 from ..motions import Motion
 from ..objective import Objective
-from ..phrases import counted
+from ..phrases import counted, counted_pieces
 from ..trial import Trial
 from .least_squares import fit_offsets
 from .problem import FitProblem
@@ -71,6 +71,7 @@ class TrialComparison:
         return {
             "id": self.trial.id,
             "run": self.trial.run,
+            "part_of": self.trial.part_of or None,
             "role": self.role,
             "manoeuvre": self.trial.manoeuvre,
             "source": self.trial.source,
@@ -144,13 +145,20 @@ def mean_off(compared: Sequence[TrialComparison], which: str) -> dict[str, float
 
 
 def off_document(compared: Sequence[TrialComparison]) -> dict[str, Any]:
-    """For JSON: the number of trials, and before and after how far off track and heading they are as mean."""
+    """For JSON: the number of trials, and of windows where they were cut, and before and after how far off track and
+    heading they are as mean."""
     before, after = (mean_off(compared, which) for which in ("before", "after"))
     return {
-        "trials": len(compared),
+        "trials": len({one.trial.whole for one in compared}),
+        **({"windows": len(compared)} if any(one.trial.part_of for one in compared) else {}),
         "track_m": {"before": before.get("track"), "after": after.get("track")},
         "heading_deg": {"before": before.get("heading"), "after": after.get("heading")},
     }
+
+
+def counted_trials(compared: Sequence[TrialComparison]) -> str:
+    """How many trials are compared, in words, or windows of how many."""
+    return counted_pieces([one.trial.whole for one in compared], [one.trial.id for one in compared])
 
 
 def rounded(value: float, digits: int) -> str:

@@ -27,7 +27,7 @@ from ..trial import Coverage, another_ship
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
-from .comparison import ROLES, WHICH, ComparedTrials, off_in_words, total
+from .comparison import ROLES, WHICH, ComparedTrials, TrialComparison, counted_trials, off_in_words, total
 from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
@@ -213,7 +213,7 @@ class FitResult(Plotted):
         chosen = tests or [c for c in self.compared if c.role == "tune"]
         if not chosen:
             return self.verdict_of_stated()
-        trials = f"{len(chosen)} trial{'s' * (len(chosen) > 1)}"
+        trials = counted_trials(chosen)
         said = [f"On {trials} not used for tuning" if tests else f"On the {trials} it was tuned to"]
         said[0] += f", the tuned {self.profile.name}"
         after, before = (off_in_words(chosen, which) for which in ("after", "before"))
@@ -228,7 +228,8 @@ class FitResult(Plotted):
             said.append(f"J ({self.method}) {self._J_words('test' if tests else 'tune')}")
         if tests:
             better = sum(c.J["after"] < c.J["before"] for c in tests)
-            said.append(f"{better} of {len(tests)} of these trials improve")
+            each = "windows" if any(one.trial.part_of for one in tests) else "trials"
+            said.append(f"{better} of {len(tests)} of these {each} improve")
         else:
             said.append("there are no test trials to confirm it")
         return f"{'; '.join(said)}."
@@ -279,9 +280,9 @@ class FitResult(Plotted):
         of, model = self.provenance["trials"]["ship"], self.profile.id
         found = [Warned("another-ship", f"{capital(words)}.") for words in another_ship(of, model)]
         trials = [c.trial for c in self.compared]
-        generated = sorted({trial.id for trial in trials if trial.source == "generated"})
+        generated = {trial.whole for trial in trials if trial.source == "generated"}
         if generated:
-            said = f"{len(generated)} of {len(trials)} trials are generated, not measured."
+            said = f"{len(generated)} of {len({trial.whole for trial in trials})} trials are generated, not measured."
             found.append(Warned("generated", said))
         if self.bends_to_noise:
             found.append(Warned("initial", f"{capital(self.bends_to_noise)}."))
@@ -310,7 +311,7 @@ class FitResult(Plotted):
     def _of_comparison(self) -> list[Warned]:
         """What is to be known of how simulations of the trials were compared, and came out."""
         found = []
-        gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
+        gaps = dict.fromkeys(c.trial.whole for c in self.compared if np.isnan(c.trial.motion).any())
         if gaps:
             found.append(Warned("gaps", f"Gaps in these trials do not count: {', '.join(gaps)}."))
         lost = [c.trial.id for c in self.compared if c.motions["after"].diverged]
@@ -318,7 +319,8 @@ class FitResult(Plotted):
             found.append(Warned("lost", f"The tuned model diverges on: {', '.join(lost)}."))
         worse = [c.trial.id for c in self.compared if c.role == "test" and c.J["after"] > c.J["before"]]
         if worse:
-            said = f"Worse than before on test trials: {', '.join(worse)}: the tuning does not carry over to them."
+            on = "windows of test trials" if any(one.trial.part_of for one in self.compared) else "test trials"
+            said = f"Worse than before on {on}: {', '.join(worse)}: the tuning does not carry over to them."
             found.append(Warned("worse", said))
         return found
 

@@ -21,7 +21,7 @@ from ..options.choice import must_be
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .box import A_R
-from .comparison import TrialComparison, compare, off_document, off_in_words
+from .comparison import TrialComparison, compare, counted_trials, off_document, off_in_words
 from .extending import settled
 from .folder import write_run
 from .journal import finished, journalled
@@ -112,8 +112,9 @@ class SweepResult(Plotted):
         J = f"J is least with this width ({run.method}: {self.judged()[i]:.4g})"
         if not after:
             return f"Use a_r = {self.widths[i]:g}: on trials not used for tuning {J}."
-        trials = f"{len(held)} trial{'s' * (len(held) > 1)}"
-        where = f"{trials} not used for tuning" if self.leave_one_out is None else f"{trials}, each left out in turn"
+        trials = counted_trials(held)
+        each = "each trial" if any(one.trial.part_of for one in held) else "each"
+        where = f"{trials} not used for tuning" if self.leave_one_out is None else f"{trials}, {each} left out in turn"
         sizes = " and ".join(f"{size} off {of}" for of, size in after.items())
         instead = f" instead of {' and '.join(before.values())}" if list(before) == list(after) else ""
         return (
@@ -259,7 +260,7 @@ def _sweep(
     command: str,
 ) -> SweepResult:
     began = time.perf_counter()
-    trials = in_pieces(trials, options)
+    whole, trials = trials, in_pieces(trials, options)
     for a_r in options.widths:  # every width must be possible before the first is worked on
         make_problem(profile, trials, options.at(a_r))
     runs: list[FitResult] = []
@@ -267,7 +268,7 @@ def _sweep(
         own = None if folder is None else folder / folder_name(a_r)
         result = fit(
             profile,
-            trials,
+            whole,  # each fit cuts them itself, and says of whole trials what is odd about them
             options.at(a_r),
             hooks=_named(hooks, a_r),
             more_starts=tuple(run.theta for run in runs[-1:]),

@@ -92,7 +92,9 @@ def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]
     where = where or ("test trials" if held else "trials tuned on")
     means = {"track_m": findings.mean_off_track, "heading_deg": findings.mean_off_heading}
     off = {key: {which: mean(rows, which) for which in ("before", "after")} for key, mean in means.items()}
-    cards = list(off_cards({"trials": len(rows), **off}, where))
+    trials = {row.get("part_of") or row["id"] for row in rows}
+    cut = {"windows": len(rows)} if any(row.get("part_of") for row in rows) else {}
+    cards = list(off_cards({"trials": len(trials), **cut, **off}, where))
     tuned = change(data.get("J_tune_before"), data.get("J_tune"))
     if held and number(data.get("J_test")) is not None:
         moved = change(data.get("J_test_before"), data["J_test"])
@@ -111,7 +113,10 @@ def off_cards(off: Mapping[str, Any], where: str) -> tuple[Card, ...]:
 
     where  what the trials are
     """
-    note = f"root mean square of each trial, mean of {count(off['trials'], 'trial')}"
+    trials = count(off["trials"], "trial")
+    note = f"root mean square of each trial, mean of {trials}"
+    if "windows" in off:
+        note = f"root mean square of each window, mean of {count(off['windows'], 'window')} of {trials}"
     cards = []
     for key, label, unit, digits in (("track_m", "Off track", " m", 3), ("heading_deg", "Off heading", "°", 2)):
         before, after = (number(off[key].get(which)) for which in ("before", "after"))

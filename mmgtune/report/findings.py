@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .wording import CHANNELS, change, clean, count, fixed, listing, number, percent, short, shown
+from .wording import CHANNELS, change, clean, count, count_of_trials, fixed, listing, number, percent, short, shown
 
 
 def misfit(options: Mapping[str, Any]) -> str:
@@ -70,7 +70,7 @@ def tracks(results: Sequence[Mapping[str, Any]], after_words: str = "after tunin
         return "Tracks of the trials; no distances were recorded."
     verb = "closes from" if after < before else "opens from" if after > before else "stays at"
     text = f"The gap to the measured track {verb} {shown(before, 3)} m to {shown(after, 3)} m (root mean square"
-    text += f", mean of {count(len(results), 'trial')})." if len(results) > 1 else ")."
+    text += f", mean of {count_of_trials(results)})." if len(results) > 1 else ")."
     worst = max(results, key=lambda row: off_track(row, "after") or 0.0)
     if len(results) > 1:
         text += f" The worst {after_words} is {clean(worst['id'])}, {shown(off_track(worst, 'after'), 3)} m."
@@ -82,10 +82,11 @@ def distances(results: Sequence[Mapping[str, Any]]) -> str:
     pairs = [(off_track(row, "before"), off_track(row, "after")) for row in results]
     known = [(first, last) for first, last in pairs if first is not None and last is not None]
     closer = sum(last < first for first, last in known)
+    of = count_of_trials([row for row, pair in zip(results, pairs, strict=True) if None not in pair])
     if known and closer == len(known):
-        where = f"all {count(closer, 'trial')}" if closer > 1 else "this trial"
+        where = f"all {of}" if closer > 1 else "this trial"
         return f"The simulated ship comes closer to the measured one in {where}."
-    return f"The simulated ship comes closer to the measured one in {closer} of {count(len(known), 'trial')}."
+    return f"The simulated ship comes closer to the measured one in {closer} of {of}."
 
 
 def histories(results: Sequence[Mapping[str, Any]]) -> str:

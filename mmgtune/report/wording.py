@@ -61,6 +61,13 @@ def input_channel(name: str, words: str, unit: str) -> Channel:
     )
 
 
+def count_of_trials(rows: Sequence[Mapping[str, Any]]) -> str:
+    """How many trials rows of ``trial_results`` are of, "5 trials" or "65 windows of 5 trials"; records of older
+    versions do not say what a window is of."""
+    ids = [str(row["id"]) for row in rows]
+    return phrases.counted_pieces([row.get("part_of") or row["id"] for row in rows], ids)
+
+
 _SUFFIXES = (
     ("_deg_per_s", "deg/s"), ("_m_per_s", "m/s"), ("_deg", "deg"), ("_kn", "kn"), ("_m", "m"), ("_s", "s"),
 )  # fmt: skip
