@@ -55,6 +55,21 @@ class TrialComparison:
         return float(np.hypot(x, y)), float(np.degrees(psi))
 
     @property
+    def closer(self) -> bool:
+        """Whether its track comes closer to the measured one, in metres."""
+        return self.off("after")[0] < self.off("before")[0]
+
+    @property
+    def mixed(self) -> bool:
+        """Whether J rises though the track comes closer, as where the heading is further off."""
+        return self.J["after"] > self.J["before"] and self.closer
+
+    @property
+    def worse(self) -> bool:
+        """Whether it is worse than before: J rises, and the track comes no closer."""
+        return self.J["after"] > self.J["before"] and not self.closer
+
+    @property
     def indices(self) -> dict[str, dict[str, Any]]:
         """Manoeuvring indices "measured", "before" and "after"."""
         measured = self.records["before"].measured.indices

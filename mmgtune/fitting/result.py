@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -155,7 +155,7 @@ class FitResult(Plotted):
         if not tests or not tunes:
             return False
         each = [sum(one.J["after"] for one in of) / sum(one.trial.n_samples for one in of) for of in (tests, tunes)]
-        return any(one.J["after"] > one.J["before"] for one in tests) or each[0] > MISSED * each[1]
+        return any(one.worse for one in tests) or each[0] > MISSED * each[1]
 
     @property
     def bends_to_noise(self) -> str:
@@ -227,12 +227,19 @@ class FitResult(Plotted):
         else:
             said.append(f"J ({self.method}) {self._J_words('test' if tests else 'tune')}")
         if tests:
-            better = sum(c.J["after"] < c.J["before"] for c in tests)
-            each = "windows" if any(one.trial.part_of for one in tests) else "trials"
-            said.append(f"{better} of {len(tests)} of these {each} improve")
+            said.append(self._improved(tests))
         else:
             said.append("there are no test trials to confirm it")
         return f"{'; '.join(said)}."
+
+    def _improved(self, tests: Sequence[TrialComparison]) -> str:
+        """How many of the test trials improve, by J; where J rises on one whose track comes closer, both counts."""
+        better = sum(one.J["after"] < one.J["before"] for one in tests)
+        each = "windows" if any(one.trial.part_of for one in tests) else "trials"
+        said = f"{better} of {len(tests)} of these {each}"
+        if not any(one.mixed for one in tests):
+            return f"{said} improve"
+        return f"J falls on {said}, the track comes closer on {sum(one.closer for one in tests)}"
 
     def _J_words(self, role: str) -> str:
         """Change of J over the trials of a role, in words."""
@@ -317,11 +324,16 @@ class FitResult(Plotted):
         lost = [c.trial.id for c in self.compared if c.motions["after"].diverged]
         if lost:
             found.append(Warned("lost", f"The tuned model diverges on: {', '.join(lost)}."))
-        worse = [c.trial.id for c in self.compared if c.role == "test" and c.J["after"] > c.J["before"]]
+        tests = [c for c in self.compared if c.role == "test"]
+        on = "windows of test trials" if any(c.trial.part_of for c in tests) else "test trials"
+        worse = ", ".join(c.trial.id for c in tests if c.worse)
         if worse:
-            on = "windows of test trials" if any(one.trial.part_of for one in self.compared) else "test trials"
-            said = f"Worse than before on {on}: {', '.join(worse)}: the tuning does not carry over to them."
+            said = f"Worse than before on {on}: {worse}: the tuning does not carry over to them."
             found.append(Warned("worse", said))
+        mixed = ", ".join(c.trial.id for c in tests if c.mixed)
+        if mixed:
+            said = f"J rises on {on} that come closer in metres: {mixed}: what else J counts is further off there."
+            found.append(Warned("mixed", said))
         return found
 
     def coefficients(self) -> list[dict[str, Any]]:

@@ -21,7 +21,7 @@ from ..options.choice import must_be
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .box import A_R
-from .comparison import TrialComparison, compare, counted_trials, off_document, off_in_words
+from .comparison import TrialComparison, compare, counted_trials, mean_off, off_document, off_in_words
 from .extending import settled
 from .folder import write_run
 from .journal import finished, journalled
@@ -131,15 +131,28 @@ class SweepResult(Plotted):
         return self.runs[-1 if self.interrupted else self.best].warned()
 
     def overfitting(self) -> dict[str, Any]:
-        """Whether J rises on trials not used while it falls on those tuned to; not said of a sweep that was stopped."""
+        """Whether trials not used get worse while J falls on those tuned to; not said of a sweep that was stopped.
+
+        They do where J rises on them and their tracks come no closer: J alone may rise where the metres improve.
+        """
         if self.interrupted:
             return {"found": None, "sentence": "Whether a wider box over-fits is not known before all widths are done."}
         judged, best = self.judged(), self.best
-        worse = [
+        rises = [
             i
             for i in range(best + 1, len(judged))
             if judged[i] > judged[best] * 1.01 and self.runs[i].J < self.runs[best].J
         ]
+        worse = [i for i in rises if not self._closer(i)]
+        if rises and not worse:
+            i = max(rises, key=lambda k: judged[k])
+            return {
+                "found": False,
+                "sentence": (
+                    f"No clear over-fitting: at a_r = {self.widths[i]:g} J rises to {judged[i]:.4g} on trials not "
+                    f"used, from {judged[best]:.4g}, but their tracks come closer: {self._further_off(i)[:-2]}."
+                ),
+            }
         if not worse:
             return {
                 "found": False,
@@ -154,6 +167,11 @@ class SweepResult(Plotted):
                 f"but rises to {judged[i]:.4g} on trials not used, from {judged[best]:.4g}."
             ),
         }
+
+    def _closer(self, i: int) -> bool:
+        """Whether the tracks of trials held out are closer at an a_r than at the recommended one, as mean."""
+        there, best = (mean_off(held, "after") if (held := self.held_out(k)) else {} for k in (i, self.best))
+        return list(there) == list(best) and "track" in there and there["track"] < best["track"]
 
     def _further_off(self, i: int) -> str:
         """How far off trials held out are at an a_r, and at the recommended one."""

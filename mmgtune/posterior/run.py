@@ -215,7 +215,7 @@ def _drawn(
         learnt=mode.learnt(sized.temper),
         nonlinear=nonlinear,
         converged=mode.converged,
-        shown=shown_by(chosen),
+        shown=shown_by(chosen, ship.L_pp),
         provenance=provenance,
         interrupted=interrupted,
         trials_ship=trials_ship,

@@ -20,7 +20,7 @@ from ..hooks import Hooks
 from ..manoeuvres import manoeuvre_kind
 from ..motions import track_if_whole
 from ..predictor import PhysicsPredictor, cases_from
-from ..trial import Trial
+from ..trial import Coverage, Trial
 from ..units import DEG
 from .local import Mode, Windowed, find_mode, particles_about
 
@@ -35,7 +35,7 @@ GRID = (1.0 / 3.0, 1.0, 3.0, 10.0, 30.0, 100.0)
 """Factors on the variance that left-out groups choose among; with the first the noise is what it is."""
 
 CIRCLE = 150.0
-"""Change of heading [deg] from which a trial shows a turn to that side."""
+"""Change of heading [deg] over a trial from which it shows a turning circle to that side."""
 
 SHARES = 4
 """Parts of a group of several runs that are left out besides: trials of one kind differ among themselves too."""
@@ -110,31 +110,49 @@ def group_of(trial: Trial) -> str:
 class Shown:
     """What orders trials hold: predictions beyond them rest on the room alone.
 
-    rudder   largest to starboard and to port [deg]
-    circles  sides that a turn goes to
-    astern   whether revolutions are ever astern
+    rudder    largest to starboard and to port [deg]
+    coverage  what they visit, as a fit to them has it: which sides she turned to
+    circles   sides that a turning circle goes to
+    astern    whether revolutions are ever astern
     """
 
     rudder: tuple[float, float]
+    coverage: Coverage
     circles: tuple[str, ...]
     astern: bool
 
     def sentence(self) -> str:
         """In words."""
         starboard, port = self.rudder
-        turns = f"turns to {' and '.join(self.circles)}" if self.circles else "no turns"
+        turns = self.coverage.turns
+        if self.coverage.sides:
+            turns += f", {self._circles()}"
         astern = "" if self.astern else ", no revolutions astern"
         return (
             f"The trials show rudder up to {starboard:.0f} deg to starboard and {port:.0f} deg to port, {turns}{astern}"
             "; beyond that bands are as wide as the room allows."
         )
 
-    def one_sided(self) -> str | None:
-        """A warning where turns go to one side alone, or rudder to one side less than half as far; else None."""
-        other = {"starboard": "port", "port": "starboard"}
+    def _circles(self) -> str:
+        """Where turning circles go, in words."""
         if len(self.circles) == 1:
-            side = self.circles[0]
+            return f"turning circles to {self.circles[0]} alone"
+        return "turning circles to both" if self.circles else "no turning circle"
+
+    def one_sided(self) -> str | None:
+        """A warning where turns, or turning circles, go to one side alone, or rudder to one side less than half as far;
+        else None.
+        """
+        other = {"starboard": "port", "port": "starboard"}
+        if len(self.coverage.sides) == 1:
+            side = self.coverage.sides[0]
             what = f"turns to {side} alone"
+        elif len(self.circles) == 1:
+            side = self.circles[0]
+            return (
+                f"The trials show turns to both sides, but {self._circles()}: bands of circles to {other[side]} rest "
+                f"on the shorter turns there, on what the ship does to {side} and on the room."
+            )
         elif min(self.rudder) < 0.5 * max(self.rudder):
             side = "starboard" if self.rudder[0] > self.rudder[1] else "port"
             what = f"little rudder to {other[side]}"
@@ -143,14 +161,15 @@ class Shown:
         return f"The trials show {what}: bands to {other[side]} rest on what the ship does to {side} and on the room."
 
 
-def shown_by(trials: Sequence[Trial]) -> Shown:
-    """What orders trials hold."""
+def shown_by(trials: Sequence[Trial], L_pp: float) -> Shown:
+    """What orders trials hold.  L_pp [m]."""
     starboard, port = (max(0.0, *(float(np.nanmax(side * one.delta)) / DEG for one in trials)) for side in (1.0, -1.0))
     turned = [float(trial.psi[-1] - trial.psi[0]) / DEG for trial in trials if np.isfinite(trial.psi[[0, -1]]).all()]
     circles = tuple(
         name for name, side in (("starboard", 1.0), ("port", -1.0)) if any(side * angle >= CIRCLE for angle in turned)
     )
-    return Shown((starboard, port), circles, any(np.nanmin(trial.n) < 0.0 for trial in trials))
+    astern = any(np.nanmin(trial.n) < 0.0 for trial in trials)
+    return Shown((starboard, port), Coverage.of(trials, L_pp), circles, astern)
 
 
 def left_out_of(trials: Sequence[Trial]) -> tuple[tuple[str, ...], list[list[Trial]]]:

@@ -179,6 +179,13 @@ class Coverage:
                 found.append(side)
         return tuple(found)
 
+    @property
+    def turns(self) -> str:
+        """The sides she turned to under rudder, in words."""
+        if len(self.sides) == 1:
+            return f"turns to {self.sides[0]} only"
+        return "turns to both sides" if self.sides else "no turn"
+
     def most_rate(self, side: str) -> float:
         """The largest r L / U [-] to a side, "port" or "starboard"; 0 where there was none."""
         return _to(side, self.rate)
@@ -206,12 +213,10 @@ class Coverage:
             return "What the trials visit cannot be told: a channel was never measured."
         low, high = (value / DEG for value in self.rudder)
         rudder = f"rudder from {_side(low)} to {_side(high)}"
-        sides = ("no turn", f"turns to {self.sides[0]} only" if self.sides else "", "turns to both sides")[
-            len(self.sides)
-        ]
         astern = "also astern" if self.astern else "never astern"
         return (
-            f"The trials visit: {rudder}, {sides}, speeds of {self.speed[0]:.3g} to {self.speed[1]:.3g} m/s, {astern}."
+            f"The trials visit: {rudder}, {self.turns}, speeds of {self.speed[0]:.3g} to {self.speed[1]:.3g} m/s, "
+            f"{astern}."
         )
 
     def unvisited_by(self, other: Coverage) -> list[str]:

@@ -306,17 +306,58 @@ def test_trials_left_out_by_a_sweep_and_by_leave_out_are_judged_alike(choice):
 
 
 def test_over_fitting_is_named(swept):
-    """Doctored: a wider box that fits the tune trials better and the others worse."""
+    """Doctored: a wider box that fits the tune trials better and the others worse, in J and in metres."""
 
     class Doctored(type(swept)):
         def judged(self):
             return [1.0, 2.0, 5.0]
+
+        def held_out(self, i):
+            return super().held_out(len(self.runs) - 1 - i)
 
     doctored = Doctored(swept.runs, None, 1.0)
     assert doctored.overfitting()["found"]
     assert re.search(r"trials not used are \S+ m off track .*, with a_r = 0.2 ", doctored.overfitting()["sentence"])
     assert "a_r = 0.4" in doctored.overfitting()["sentence"]
     assert doctored.recommended()["a_r"] == 0.2
+
+
+def test_no_over_fitting_is_told_where_the_tracks_come_closer(swept):
+    """Doctored: J rises on trials not used, and they are fewer metres off. That was called over-fitting."""
+
+    class Doctored(type(swept)):
+        def judged(self):
+            return [1.0, 2.0, 5.0]
+
+    told = Doctored(swept.runs, None, 1.0).overfitting()
+    assert not told["found"]
+    found = re.fullmatch(
+        r"No clear over-fitting: at a_r = 0.6 J rises to 5 on trials not used, from 1, but their tracks come closer: "
+        r"trials not used are (\S+) m off track and \S+° off heading, with a_r = 0.2 (\S+) m and \S+°\.",
+        told["sentence"],
+    )
+    assert float(found[1]) < float(found[2])
+
+
+def test_a_test_trial_that_comes_closer_is_not_called_worse(swept):
+    """Doctored: J of a test trial rises though its track comes closer, as where a heading is further off."""
+    run = swept.runs[-1]
+    tests = [one for one in run.compared if one.role == "test"]
+    assert all(one.closer for one in tests)
+
+    class Risen(type(tests[0])):
+        @property
+        def J(self):
+            return {"before": 1.0, "after": 1.1}
+
+    risen = Risen(tests[0].trial, "test", tests[0].records)
+    mixed = replace(run, compared=tuple(risen if one is tests[0] else one for one in run.compared))
+    notes = [one for one in mixed.warned() if one.code in ("worse", "mixed")]
+    assert [one.code for one in notes] == ["mixed"]
+    assert notes[0].words.startswith(f"J rises on test trials that come closer in metres: {tests[0].trial.id}: ")
+    n = len(tests)
+    assert f"; J falls on {n - 1} of {n} of these trials, the track comes closer on {n}." in mixed.verdict()
+    assert f"; {n} of {n} of these trials improve." in run.verdict()
 
 
 @pytest.mark.parametrize("widths", [(), (0.2, 0.2), (0.2, -0.1)])

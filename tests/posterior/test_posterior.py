@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -14,9 +15,9 @@ from mmgtune.model import Model
 from mmgtune.options import PosteriorOptions
 from mmgtune.posterior import posterior
 from mmgtune.posterior.room import make_room, tags_of
-from mmgtune.posterior.sizing import Shown, group_of, shown_by
+from mmgtune.posterior.sizing import group_of, shown_by
 from mmgtune.profile import load_profile
-from mmgtune.trial import TrialSet
+from mmgtune.trial import Coverage, TrialSet
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.hidden.cases import null
 from tests.hidden.plant import SILENT, simulate
@@ -161,12 +162,31 @@ def test_one_side_alone_is_said(sailed):
     trials = sailed[0]
 
     def said(*names):
-        return shown_by([trials[name] for name in names]).one_sided()
+        return shown_by([trials[name] for name in names], 83.0).one_sided()
 
     assert said("turn_p35", "turn_m35") is None
     assert said("zigzag_10", "zigzag_20") is None
-    assert "turns to starboard alone: bands to port" in said("turn_p35", "zigzag_10")
-    assert "turns to port alone: bands to starboard" in said("turn_m35", "zigzag_10")
-    weak = Shown((10.0, 35.0), ("starboard", "port"), astern=False)
+    assert "turns to starboard alone: bands to port" in said("turn_p35", "turn_p10")
+    assert "turns to port alone: bands to starboard" in said("turn_m35")
+    assert "both sides, but turning circles to starboard alone: bands of circles to port" in said(
+        "turn_p35", "zigzag_10"
+    )
+    assert "both sides, but turning circles to port alone: bands of circles to star" in said("turn_m35", "zigzag_10")
+    both = shown_by([trials["turn_p35"], trials["turn_m35"]], 83.0)
+    weak = replace(both, rudder=(10.0, 35.0))
     assert "little rudder to starboard: bands to starboard rest on what the ship does to port" in weak.one_sided()
     assert "no revolutions astern" in weak.sentence()
+
+
+@pytest.mark.parametrize(
+    "names", [("turn_p35", "zigzag_10"), ("turn_p35",), ("turn_m35",), ("turn_p35", "turn_m35"), ("zigzag_20",)]
+)
+def test_a_fit_and_a_posterior_say_the_same_of_the_sides(sailed, names):
+    """Of a turn to starboard and a zigzag a fit said "both sides", a posterior "turns to starboard alone"."""
+    trials = [sailed[0][name] for name in names]
+    coverage = Coverage.of(trials, 83.0)
+    shown = shown_by(trials, 83.0)
+    assert coverage.turns in coverage.sentence
+    assert coverage.turns in shown.sentence()
+    warned = shown.one_sided() or ""
+    assert bool(re.search(r"show turns to (starboard|port) alone", warned)) == (len(coverage.sides) == 1)
