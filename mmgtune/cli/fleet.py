@@ -76,7 +76,7 @@ def run(
         plan = plan_fleet(table, out)
         c.print_json(_plan_dict(plan, options)) if json else c.show(plan_text(plan, options, out))
         return
-    interrupts.handle(interrupts.stop_at_once(f"what is done is in {out}; --resume --out {out} goes on"))
+    interrupts.handle(interrupts.stop_at_once(interrupts.continued(out)))
     said = _Said(quiet)
     result = run_fleet(table, out, options, resume=resume, on_progress=said, command=c.command_line())
     if not no_report:

@@ -9,6 +9,7 @@ import contextlib
 import os
 import signal
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NoReturn
 
 from ..files import abandon
@@ -34,6 +35,11 @@ def stop_at_once(words: str) -> Handler:
         leave(number, words)
 
     return handler
+
+
+def continued(folder: Path) -> str:
+    """What to say of a run whose folder holds what was done of it."""
+    return f"what is done is in {folder}; --resume --out {folder} continues"
 
 
 def leave(number: int, words: str) -> NoReturn:

@@ -19,7 +19,7 @@ from ..files import refuse_file, resumed_nowhere
 from ..options import FLAGS, Options, again, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
 from ..options.flags import off_flag
-from . import completing
+from . import completing, interrupts
 from .exitcodes import EPILOG
 
 
@@ -160,6 +160,9 @@ def takes(**groups: type[Options]) -> Callable[[Callable[..., None]], Callable[.
                     problems += error.problems
             if problems:
                 raise OptionError(*problems)
+            for run in made.values():
+                if isinstance(run, RunOptions | WrittenOptions) and run.resume and run.out is not None:
+                    interrupts.handle(interrupts.stop_at_once(interrupts.continued(run.out)))
             command(**rest, **made)
 
         named = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in parameters]

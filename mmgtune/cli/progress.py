@@ -77,7 +77,7 @@ class Progress:
         if self._status is not None:
             self._status.stop()
             self._status = None
-        interrupts.handle(interrupts.stop_at_once(self._saved or "nothing was left half-written"))
+        interrupts.handle(interrupts.stop_at_once(self._saved or interrupts.continued(self.folder)))
 
     def saved(self, interrupted: bool) -> None:
         """Note that the result is written.

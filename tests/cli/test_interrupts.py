@@ -55,6 +55,34 @@ def test_in_a_destructor(tmp_path):
     assert found.stderr == "interrupted: nothing was left half-written\n"
 
 
+RESUMED = ("fit", "--method", "least-squares", "--quiet", "--resume", "--out", "run")
+
+
+@pytest.mark.parametrize("name", ["mmgtune.trial.parquet", "mmgtune.fitting.run"])
+def test_before_a_run_goes_on(tmp_path, name):
+    """It said "nothing was left half-written" of a run that is there and goes on with --resume."""
+    found = ended(tmp_path, *RESUMED, name=name)
+    assert found.returncode == 130
+    assert found.stderr == "interrupted: what is done is in run; --resume --out run continues\n"
+
+
+@pytest.mark.long
+def test_after_an_error_in_a_run(tmp_path):
+    """What was worked out before the error is kept: the run goes on once the reason is mended."""
+    before = """
+import mmgtune.fitting as fitting
+import mmgtune.cli as cli
+from mmgtune.errors import OutputError, Problem
+def failed(*_, **__):
+    raise OutputError(Problem("the disk is full", "run"))
+fitting.fit = failed
+cli.problems_in_flags = lambda _: sent()
+"""
+    found = ended(tmp_path, "fit", *FEW, before=before)
+    assert found.returncode == 130
+    assert found.stderr == "interrupted: what is done is in run; --resume --out run continues\n"
+
+
 def test_at_exit(tmp_path):
     before = "import atexit, time; atexit.register(lambda: (sent(), time.sleep(0.05)))"
     found = ended(tmp_path, "profile", "list", before=before)
