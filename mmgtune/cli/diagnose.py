@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Left:
-    """About how long a diagnosis still takes.
+    """About how long a diagnosis still takes, as far as that can be told.
 
     seconds  what was reckoned before it began, from and to [s]
     most     causes that may be looked for
@@ -35,7 +35,10 @@ class Left:
         self.looks: list[tuple[str, float]] = []
 
     def words(self, phase: str) -> str:
-        """While it looks: before the first look is over what was reckoned, then what as many looks would take."""
+        """While it looks: before the first look is over what was reckoned, then what as many looks would take.
+
+        What follows the looks is not in these.  Where it takes longer than was reckoned, that is said.
+        """
         now = time.monotonic()
         if not phase.startswith("looking for"):
             return ""
@@ -44,10 +47,15 @@ class Left:
         done = len(self.looks) - 1
         if not done:
             low, high = (seconds - (now - self.began) for seconds in self.seconds)
+            if high <= 0.0:
+                return self._longer(now)
             return f"about {in_time(low)} to {in_time(high)} left" if low > 0.0 else f"up to {in_time(high)} left"
         each = (self.looks[-1][1] - self.looks[0][1]) / done
         rest = each * max(1, self.most - done) - (now - self.looks[-1][1])
-        return f"up to {in_time(rest)} left"
+        return f"up to {in_time(rest)} more of looking" if rest > 0.0 else self._longer(now)
+
+    def _longer(self, now: float) -> str:
+        return f"longer than was reckoned, {in_time(now - self.began)} so far"
 
 
 FAILING = ("none", "found", "not-separable", "unexplained")

@@ -13,15 +13,20 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from ..units import in_time
 from . import interrupts
 from .output import harmless, say
+from .pace import Pace
 
 if TYPE_CHECKING:
     from ..fitting.cmaes import Search
     from ..hooks import Hooks
 
-LINE_EVERY = 5.0
-"""Seconds between two lines where stderr is no terminal."""
+LINE_EVERY, TIME_EVERY = 5.0, 60.0
+"""Seconds between two lines where stderr is no terminal; and where these say no more than the time so far."""
+
+ASKED_EVERY = 0.25
+"""Seconds between two looks at the clock by work that asks whether to stop, which it may do very often."""
 
 
 class Progress:
@@ -48,7 +53,9 @@ class Progress:
         self._saved = ""
         self._phase = ""
         self._began = time.monotonic()
-        self._last_line = 0.0
+        self._last_line = self._last_asked = 0.0
+        self._pace = Pace()
+        self._candidates = 0
         self._status: Any = None
 
     @property
@@ -107,45 +114,55 @@ class Progress:
         interrupts.tell(f"finishing this step, then saving {self.kept}; press Ctrl-C again to stop at once")
 
     def _asked(self) -> bool:
-        """Whether to stop; who asks that is at work, so what is left of it is told anew now and then."""
-        if self._phase and (left := self._left(self._phase)):
-            self._show(f"{self._phase}, {left}")
+        """Whether to stop; who asks that is at work, so what is left of it, or how long it takes, is told anew."""
+        now = time.monotonic()
+        if self._phase and now - self._last_asked > ASKED_EVERY:
+            self._last_asked = now
+            if left := self._left(self._phase):
+                self._show(f"{self._phase}, {left}")
+            else:
+                self._show(f"{self._phase}, {self._so_far()}", every=TIME_EVERY)
         return self.stopped
+
+    def _so_far(self) -> str:
+        """How long the command has been at work, in words."""
+        return f"{in_time(time.monotonic() - self._began)} so far"
 
     def _on_phase(self, words: str) -> None:
         self._phase = words
-        self._began = time.monotonic()
+        self._pace, self._candidates = Pace(), 0
         left = self._left(words)
         self._show(f"{words}, {left}" if left else words, line=True)
 
     def on_share(self, done: int, total: int, words: str) -> None:
-        """A share of the work is done: tell it, with the time that is left."""
-        elapsed = time.monotonic() - self._began
-        left = f", about {elapsed * (total / done - 1.0):.0f} s left" if done else ""
-        self._show(f"{words}: {100.0 * done / max(total, 1):.0f} %{left}")
+        """A share of the work is done: tell it, with the time that is left where the pace is known."""
+        left = self._pace.left(done, total - done) or self._so_far()
+        self._show(f"{words}: {100.0 * done / max(total, 1):.0f} %, {left}")
 
     def _on_generation(self, state: Search) -> None:
         from ..fitting.cmaes import LAMBDAS, USUAL_GENERATIONS
 
         now = state.history[-1]
-        work = [population * usual for population, usual in zip(LAMBDAS, USUAL_GENERATIONS, strict=True)]
-        share = min(now.generation / USUAL_GENERATIONS[now.restart], 0.95)
-        done = sum(work[: now.restart]) + share * work[now.restart]
-        elapsed = time.monotonic() - self._began
-        left = elapsed * (sum(work) / done - 1.0)
+        self._candidates += now.population
+        usual = USUAL_GENERATIONS[now.restart]
+        work = [population * many for population, many in zip(LAMBDAS, USUAL_GENERATIONS, strict=True)]
+        rest = now.population * (usual - now.generation) + sum(work[now.restart + 1 :])
+        left = self._pace.left(self._candidates, rest)
+        if now.generation > usual:  # when it ends nobody knows
+            left = f"more than the usual {usual} generations, {self._so_far()}"
         self._show(
             f"{self._phase}: restart {now.restart + 1} of {len(LAMBDAS)} (lambda {now.population}), "
             f"generation {now.generation}, {now.evaluations} evaluations, J {state.J:.6g}, sigma {now.sigma:.1e}, "
-            f"lost {state.diverged}, about {left:.0f} s left of it"
+            f"lost {state.diverged}, {f'{left} of it' if left.endswith('left') else left or self._so_far()}"
         )
 
-    def _show(self, text: str, line: bool = False) -> None:
+    def _show(self, text: str, line: bool = False, every: float = LINE_EVERY) -> None:
         if self.quiet:
             return
         if self._status is not None:
             from rich.text import Text
 
             self._status.update(Text(harmless(text)))
-        elif line or time.monotonic() - self._last_line > LINE_EVERY:
+        elif line or time.monotonic() - self._last_line > every:
             self._last_line = time.monotonic()
             say(text)

@@ -6,6 +6,8 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -121,8 +123,85 @@ def test_how_long_a_diagnosis_may_still_take(monkeypatch):
     now[0] = 150.0
     assert left.words("looking for a cause") == "up to 70 s left"
     now[0] = 170.0  # the first look took a minute; three more may follow
-    assert left.words("looking for cause 2") == "up to 3 min left"
+    assert left.words("looking for cause 2") == "up to 3 min more of looking"
     assert left.words("comparing the causes with their rivals") == ""
+    now[0] = 400.0  # it said "up to 1 s left" from then on
+    assert left.words("looking for cause 2") == "longer than was reckoned, 5 min so far"
+
+
+def test_a_first_look_that_takes_longer_than_reckoned(monkeypatch):
+    from mmgtune.cli.diagnose import Left
+
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    left = Left((30.0, 120.0), most=4)
+    assert left.words("looking for a cause") == "about 30 s to 2 min left"
+    now[0] = 119.0
+    assert left.words("looking for a cause") == "up to 1 s left"
+    now[0] = 240.0
+    assert left.words("looking for a cause") == "longer than was reckoned, 4 min so far"
+
+
+def test_the_time_left_is_that_of_the_measured_pace(monkeypatch):
+    """A resumed run said "about 1 s left" for an hour: what it had done before was taken for work of now."""
+    from mmgtune.cli.pace import Pace
+
+    now = [1000.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    pace = Pace()
+    assert pace.left(900, 100) == ""  # done before
+    now[0] += 1.0
+    assert pace.left(901, 99) == ""  # too short to tell
+    now[0] += 9.0
+    assert pace.left(910, 90) == "about 90 s left"
+    for done in range(911, 931):  # it becomes five times slower
+        now[0] += 5.0
+        said = pace.left(done, 1000 - done)
+    assert said == "about 5.8 min left"
+    assert pace.left(1000, 0) == ""
+    assert pace.left(10, 90) == ""  # begun anew
+
+
+def test_progress_says_how_long_it_has_been_where_the_rest_is_not_known(monkeypatch, capsys):
+    from mmgtune.cli.progress import Progress
+
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    progress = Progress(False, Path("run"))
+    hooks = progress.hooks()
+    hooks.on_phase("measuring the gain")
+    for now[0] in (1.0, 59.0, 61.0, 70.0, 150.0):
+        assert not hooks.stop()
+    progress.on_share(50, 100, "seed 1")
+    now[0] = 160.0
+    progress.on_share(60, 100, "seed 1")
+    assert capsys.readouterr().err.splitlines() == [
+        "measuring the gain",
+        "measuring the gain, 61 s so far",
+        "measuring the gain, 2.5 min so far",
+        "seed 1: 60 %, about 40 s left",
+    ]
+
+
+def test_a_search_with_more_generations_than_usual_says_so(monkeypatch, capsys):
+    from mmgtune.cli.progress import Progress
+    from mmgtune.fitting.cmaes import LAMBDAS, USUAL_GENERATIONS, Generation
+
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    progress = Progress(False, Path("run"))
+    last, usual = len(LAMBDAS) - 1, USUAL_GENERATIONS[-1]
+
+    def tell(generation: int) -> str:
+        one = Generation(last, generation, 10 * generation, LAMBDAS[-1], 1.0, 1.0, 0.1)
+        progress.hooks().on_generation(SimpleNamespace(history=[one], J=1.0, diverged=0))
+        now[0] += 10.0
+        return capsys.readouterr().err.strip().rpartition("lost 0, ")[2]
+
+    assert tell(usual - 4) == "1 s so far"
+    assert tell(usual - 3) == "about 30 s left of it"
+    assert tell(usual - 1) == "about 10 s left of it"
+    assert tell(usual + 1) == f"more than the usual {usual} generations, 30 s so far"
 
 
 @pytest.mark.parametrize(
