@@ -238,6 +238,11 @@ def made_table(data: Mapping[str, Any], items: Sequence[tuple[str, str]]) -> Tab
     return pairs("provenance-table", "How this was made", ("what", "value"), [*_of_run(data), *items])
 
 
+def sources_rows(trials: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Licence and citation of trials, as far as these say them."""
+    return _known([("licence of the trials", trials.get("licence")), ("cite for them", trials.get("citation"))])
+
+
 def made_rows(data: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Command, version and time of a run whose record has a ``provenance``."""
     made = data["provenance"]

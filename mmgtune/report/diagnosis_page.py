@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..units import DIMENSIONLESS, NORMAL_95, read_as
-from . import advice, findings, measures, motion_block, unexplained
+from . import advice, findings, measures, motion_block, svg, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance, ship_name, warnings
 from .differences import differences
@@ -52,8 +52,11 @@ _BARS = 12
 _FOLLOWS = 0.05
 """Share of an error from which it is said that a quantity predicts it."""
 
-_LETTERS = 26
-"""Letters of a hypothesis' parameters beside its bar."""
+_ALONE = "_alone"
+"""How parameters end that stand for what bends the heading alone."""
+
+_LETTERS = svg.LETTERS - 2
+"""Letters of a hypothesis' parameters beside its bar: what a narrow page has room for, in brackets."""
 
 _FORCE_WORDS = {
     "dX": "surge [kN]", "dY": "sway [kN]", "dN": "yaw [kN m]",
@@ -393,11 +396,18 @@ def _better(alone: Mapping[str, Any], named: Sequence[str], gain: Mapping[str, A
 
 
 def _label(row: Mapping[str, Any]) -> str:
-    """A hypothesis by its parameters, or by how many these are, so that no two are cut to the same."""
-    words = ", ".join(parameters_of(row))
+    """A hypothesis by its parameters, or by how many these are, so that no two are cut to the same.
+
+    What all of the parameters have at their end stands there once.
+    """
+    names = [str(name) for name in row["parameters"]]
+    alone = len(names) > 1 and all(name.endswith(_ALONE) for name in names)
+    names = [name.removesuffix(_ALONE) for name in names] if alone else names
+    more = [*(["alone"] if alone else []), *(["of each run"] if row.get("by") else [])]
+    words = ", ".join([*names, *more])
     if len(words) > _LETTERS:
-        words = f"{len(row['parameters'])} values{', of each run' if row.get('by') else ''}"
-    return f"{clean(row['effect'])} ({words})"
+        words = ", ".join([f"{len(names)} values", *more])
+    return f"{clean(row['effect'])} ({clean(words)})"
 
 
 def _candidates_figure(rows: Sequence[Mapping[str, Any]], named: Sequence[str]) -> Figure:
@@ -414,7 +424,7 @@ def _candidates_figure(rows: Sequence[Mapping[str, Any]], named: Sequence[str]) 
     ticks = tuple((float(k), _label(row)) for k, row in enumerate(rows))
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
     x = Axis("fall of chi-squared when refitted [–]", low=least, log=log)
-    panel = Panel(tuple(marks), x, y, shape=-(25.0 * len(rows) + 48.0))
+    panel = Panel(tuple(marks), x, y, shape=-(31.0 * len(rows) + 48.0))
     return Figure("candidates", "What each hypothesis alone would explain", (panel,))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +12,11 @@ from ..inputs import INPUTS
 from . import learned_motions
 from .advice import shortest
 from .blocks import Card, Commands, Page, Prose, Section, Table, cells
-from .common import banner_of_sources, made_rows, of_training, options_fold, picture, rms_errors
+from .common import banner_of_sources, made_rows, of_training, options_fold, picture, rms_errors, sources_rows
 from .load import Kind
-from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
+from .plot import Axis, Color, Dash, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs
-from .wording import NONE, clean, count, listing, number, shown
+from .wording import clean, count, listing, number, shown
 
 ROLES = {"test": "held out", "validation": "validation", "learned": "learned from"}
 _PARTS = {
@@ -127,23 +127,36 @@ _CURVES_OF_LOSS = (
 )
 
 
+_SEED_COLORS: tuple[Color, ...] = ("after", "before", "flag", "third", "ink")
+_SEED_DASHES: tuple[Dash, ...] = ("", "dash", "long", "dot")
+"""As many colours as are told apart, and one dash less, so that twenty seeds differ in one or the other."""
+
+
 def curves_figure(members: Sequence[Mapping[str, Any]], label: str) -> Figure:
     """Loss of each network by updates, and what it is watched by, named ``label``, if anything; a dot where one was
-    kept."""
+    kept.  A seed has one look in both."""
     panels = []
-    for key, color, words in (("loss", "before", "loss on short windows [–]"), ("score", "after", label)):
+    looks = [seed_look(k) for k in range(len(members))]
+    for key, words in (("loss", "loss on short windows [–]"), ("score", label)):
         marks: list[Mark] = []
         if key == "score" and not any(key in row for one in members for row in one["curve"]):
             continue
-        for one in members:
+        for one, own in zip(members, looks, strict=True):
             rows = [row for row in one["curve"] if number(row.get(key)) is not None]
-            look = Look(color, 1.1, marker="o" if len(rows) == 1 else "", size=4.0)  # type: ignore[arg-type]
+            look = replace(own, marker="o" if len(rows) == 1 else "")
             marks.append(Line([row["step"] for row in rows], [row[key] for row in rows], look))
             if key == "score" and number(one["score"]) is not None and "best_step" in one:
-                marks.append(Dots([one["best_step"]], [one["score"]], Look("after", marker="o", size=6.0)))
+                marks.append(Dots([one["best_step"]], [one["score"]], Look(own.color, marker="o", size=6.0)))
         y = Axis(log=any(len(mark.x) for mark in marks if isinstance(mark, Line)))
         panels.append(Panel(tuple(marks), Axis("updates of the weights"), y, words))
-    return Figure("curves", "Learning curves", tuple(panels))
+    legend = [(f"seed {one['seed']}", look) for one, look in zip(members, looks, strict=True)]
+    return Figure("curves", "Learning curves", tuple(panels), tuple(legend) if len(members) > 1 else ())
+
+
+def seed_look(k: int) -> Look:
+    """The curve of one seed among several: colours told apart by the colour-blind, and a dash of its own to each."""
+    color, dash = _SEED_COLORS[k % len(_SEED_COLORS)], _SEED_DASHES[k % len(_SEED_DASHES)]
+    return Look(color, 1.3, dash, size=4.0)
 
 
 def scores_table(record: LearningRecord) -> Table:
@@ -202,8 +215,7 @@ def made_section(data: Mapping[str, Any], more: Sequence[tuple[str, str]]) -> Se
     items = [
         ("learned from", listing([clean(one) for one in trials["learned_from"]], 40)),
         ("held out", listing([clean(one) for one in data["held_out"]], 40)),
-        ("licence of the trials", clean(trials.get("licence") or NONE)),
-        ("cite for them", clean(trials.get("citation") or NONE)),
+        *sources_rows(trials),
         ("step", f"{shown(data['step_s'], 3)} s"),
         *more,
         *made_rows(data),

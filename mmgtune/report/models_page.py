@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 from . import advice, fans, motion_block, motions
 from .band_scores import MEANING, SCORE_HEADS, known_scores, score_cells
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import banner_of_sources, made_rows, picture
+from .common import banner_of_sources, made_rows, picture, sources_rows
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
 from .tables import pairs
-from .wording import CHANNELS, NONE, Channel, clean, count, listing, model_names, number, shown
+from .wording import CHANNELS, Channel, clean, count, listing, model_names, number, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -282,8 +282,7 @@ def _made(record: ModelsRecord) -> Section:
     )
     items = [
         ("trials", clean(trials["name"])),
-        ("licence of the trials", clean(trials.get("licence") or NONE)),
-        ("cite for them", clean(trials.get("citation") or NONE)),
+        *sources_rows(trials),
         ("spread counted in", clean(data["sigma_from"])),
         *(spread_words(clean(name), value) for name, value in data["sigma"].items()),
         *made_rows(data),

@@ -187,6 +187,19 @@ def _extent(marks: Sequence[Mark], axis: Axis, of: int) -> tuple[float, float]:
     return (low, high) if high != low else (low, low + 1.0)
 
 
+def _fitting(text: str, longest: int, roomy: bool) -> str:
+    """Words beside a vertical axis that have room there: what is too long goes on in a second line from its bracket
+    on, so that names whose brackets differ are still told apart, and is cut only then.
+
+    roomy  whether two lines stand beside each place
+    """
+    lines = text.split("\n")
+    head, bracket, rest = text.partition(" (")
+    if len(lines) == 1 and len(text) > longest and bracket and roomy:
+        lines = [head, f"({rest}"]
+    return "\n".join(shortened(line, longest) for line in lines)
+
+
 def _panel(panel: Panel, width: int, height: int, ink: Ink) -> str:
     """What stands in a panel of this size in pixels."""
     narrow = width < 500
@@ -204,9 +217,8 @@ def _panel(panel: Panel, width: int, height: int, ink: Ink) -> str:
         few = max(2, int((height - top - bottom) / 34))
         y_places = tuple(ticks.logarithmic(y_low, y_high) if panel.y.log else ticks.linear(y_low, y_high, few))
     longest = LETTERS if narrow else 2 * LETTERS
-    y_places = tuple(
-        (place, "\n".join(shortened(line, longest) for line in text.split("\n"))) for place, text in y_places
-    )
+    roomy = height - top - bottom >= 2.0 * _LINE * len(y_places)
+    y_places = tuple((place, _fitting(text, longest, roomy)) for place, text in y_places)
     left = (
         12.0
         + max((_width(line) for _, text in y_places for line in text.split("\n")), default=10.0)

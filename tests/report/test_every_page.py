@@ -99,6 +99,50 @@ def test_screens(browser: Any, runs: dict[str, Path], name: str) -> None:
         assert visit.requests == [visit.url]
 
 
+HIDDEN_COLUMNS = """() => [...document.querySelectorAll('.scroll')].filter((one) => one.clientWidth).map((one) => ({
+  table: one.querySelector('table').id,
+  inside: one.getBoundingClientRect().right <= document.documentElement.clientWidth,
+  wide: one.scrollWidth > one.clientWidth + 2,
+  told: getComputedStyle(one).overflowX === 'auto' && one.classList.contains('more')
+        && one.previousElementSibling.checkVisibility(),
+}))"""
+"""Of every table whether it stays inside the page, is wider than its box, and can be scrolled there, as is said."""
+
+
+@pytest.mark.daily("fit", "diagnosis")
+@pytest.mark.parametrize("name", PAGES)
+def test_a_tablet_shows_all_columns_or_says_where_more_are(browser: Any, runs: dict[str, Path], name: str) -> None:
+    """At 768 px the last columns of the tables of a fit stood outside their box."""
+    with Visit(browser, runs[name] / "report.html", viewport={"width": 768, "height": 1024}) as visit:
+        visit.page.evaluate(OPEN_ALL)
+        visit.page.wait_for_timeout(100)
+        assert visit.page.evaluate(OVERFLOW) == 0
+        tables = visit.page.evaluate(HIDDEN_COLUMNS)
+        assert tables
+        assert all(one["inside"] and one["told"] == one["wide"] for one in tables)
+        if name in ("fit", "diagnosis"):
+            assert not [one["table"] for one in tables if one["wide"]]
+
+
+SMALL_TARGETS = """() => [...document.querySelectorAll('button, summary, a, select, input')]
+  .filter((one) => one.checkVisibility() && !one.classList.contains('skip'))
+  .map((one) => ({ what: `${one.tagName} ${one.textContent.slice(0, 20)}`, ...one.getBoundingClientRect().toJSON() }))
+  .filter((one) => one.width < 24 || one.height < 24).map((one) => one.what)"""
+"""What can be tapped and is smaller than WCAG 2.2 (2.5.8) asks for."""
+
+
+@pytest.mark.daily("fit", "diagnosis")
+@pytest.mark.parametrize("name", PAGES)
+def test_fingers_find_what_can_be_tapped(browser: Any, runs: dict[str, Path], name: str) -> None:
+    """Heads that sort were 18 px high."""
+    shape: dict[str, Any] = {"viewport": {"width": 375, "height": 812}, "has_touch": True, "is_mobile": True}
+    with Visit(browser, runs[name] / "report.html", **shape) as visit:
+        visit.page.evaluate(OPEN_ALL)
+        assert visit.page.evaluate("matchMedia('(pointer: coarse)').matches")
+        assert visit.page.evaluate(SMALL_TARGETS) == []
+        assert visit.page.evaluate(OVERFLOW) == 0
+
+
 def painted(visit: Visit) -> float:
     """Bytes a pixel of a picture of the whole page; packed loosely, since packing takes most of the time."""
     devtools = visit.context.new_cdp_session(visit.page)

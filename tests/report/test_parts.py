@@ -10,6 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mmgtune.diagnose.hypotheses import known_causes, of_runs
+from mmgtune.options import DiagnoseOptions
+from mmgtune.profile import load_profile
 from mmgtune.report import (
     advice,
     band_scores,
@@ -18,6 +21,7 @@ from mmgtune.report import (
     diagnosis_page,
     fleet_figures,
     html,
+    learning_page,
     load,
     models_page,
     motion_block,
@@ -33,6 +37,7 @@ from mmgtune.report.html import embedded
 from mmgtune.report.kinds import KINDS
 from mmgtune.report.markdown import escaped
 from mmgtune.report.plot import Axis, Bar, Dots, Figure, Line, Look, Panel, Words
+from mmgtune.trial import load_trials
 
 
 @pytest.mark.parametrize(
@@ -221,6 +226,49 @@ def test_what_explains_most_alone_need_not_be_the_answer() -> None:
     assert [mark.look.color for mark in panel.marks if isinstance(mark, Dots)] == ["muted", "after", "after"]
     labels = [words for _, words in panel.y.ticks or ()]
     assert labels == ["wind (speed, direction)", "current (4 values, of each run)", "current (4 values)"]
+
+
+def test_rivals_have_different_names_on_a_phone() -> None:
+    """Two hypotheses on the compass stood there as "compass-devi… (4 values)" both."""
+    ship, data = load_profile("suzaku"), load_trials("suzaku")
+    trials, options = list(data.trials.values()), DiagnoseOptions()
+    known = [*known_causes(ship, trials, options), *known_causes(ship, trials, options, in_place=True)]
+    known += of_runs(known, trials)
+    rows = [{"effect": h.tag, "parameters": list(h.variant), "by": h.by, "gain": 9.0} for h in known]
+    names = [svg._fitting(diagnosis_page._label(row), svg.LETTERS, roomy=True) for row in rows]
+    assert len(set(names)) == len(names) > 90
+    assert not [name for name in names if "…" in name]
+    assert "compass-deviation\n(sine, cosine, alone)" in names
+    figures = [diagnosis_page._candidates_figure(rows[k : k + 12], []) for k in range(0, len(rows), 12)]
+    assert not [figure for figure in figures if "…" in svg.inline(figure)]
+
+
+def test_seeds_are_told_apart() -> None:
+    """All curves of a training were orange in one panel and blue in the other."""
+    curve = [{"step": step, "loss": 1.0 / step, "score": 2.0 / step} for step in (10, 20)]
+    members = [{"seed": k, "curve": curve, "score": 0.1, "best_step": 20} for k in range(1, 21)]
+    figure = learning_page.curves_figure(members, "L_MSE of validation [–]")
+    looks = [[mark.look for mark in panel.marks if isinstance(mark, Line)] for panel in figure.panels]
+    assert looks[0] == looks[1] == [look for _, look in figure.legend]
+    assert len({(look.color, look.dash) for look in looks[0]}) == 20
+    assert [words for words, _ in figure.legend][:2] == ["seed 1", "seed 2"]
+    for panel in figure.panels[1:]:
+        dots = [mark.look.color for mark in panel.marks if isinstance(mark, Dots)]
+        assert dots == [look.color for look in looks[1]]
+    assert learning_page.curves_figure(members[:1], "L_MSE").legend == ()
+
+
+@pytest.mark.parametrize("licence", ["", "CC0-1.0"])
+def test_trials_without_a_licence_have_no_row_of_it(licence: str) -> None:
+    trials = {"learned_from": ["a"], "licence": licence, "citation": ""}
+    made = {"trials": trials, "command": "x", "mmgtune": "1", "created": "2026-01-01", "options": {}}
+    data = {"provenance": made, "held_out": [], "step_s": 1.0, "wall_s": 2.0}
+    table = learning_page.made_section(data, []).blocks[0]
+    assert isinstance(table, Table)
+    rows = [row[0].text for row in table.rows]
+    assert "learned from" in rows
+    assert ("licence of the trials" in rows) == bool(licence)
+    assert "cite for them" not in rows
 
 
 def test_nothing_found_shows_the_model_it_speaks_of() -> None:
