@@ -214,6 +214,7 @@ def import_(
     """
     from .. import units
     from ..importing import import_logs, load_map
+    from ..trial.splitting import suggested_split
 
     if (map_ is None) == (preset is None):
         fix = "--map FILE.toml; mmgtune trials map LOG... -o FILE.toml writes one for these logs"
@@ -241,9 +242,11 @@ def import_(
         c.show(f"next: mmgtune trials check {quote(str(out))}")
         c.show(f"then, with her profile: mmgtune fit -p PROFILE -t {quote(str(out))}, or diagnose in the place of fit")
         if len(imported.trials) > 1 and out is not None and not (out / "split.toml").exists():
-            *some, last = (f'"{trial.id}"' for trial in imported.trials)
-            c.show(f"all of them tune; to keep some for testing, say so in {quote(str(out / 'split.toml'))}, such as:")
-            c.show(f"  tune = [{', '.join(some)}]\n  test = [{last}]")
+            tune, test = (", ".join(f'"{id}"' for id in ids) for ids in suggested_split(imported.trials))
+            if test:
+                where = quote(str(out / "split.toml"))
+                c.show(f"all of them tune; to keep some for testing, say so in {where}, such as:")
+                c.show(f"  tune = [{tune}]\n  test = [{test}]")
 
 
 @app.command("make")

@@ -63,6 +63,18 @@ def test_the_tutorial_does_what_it_shows(tmp_path):
     assert follow(tmp_path) == []
 
 
+def test_it_shows_the_import_to_its_end_and_edits_no_profile_by_hand():
+    """The last lines of the import were left out, and tables were cut out of a profile with sed."""
+    page = PAGE.read_text(encoding="utf-8")
+    blocks = [text for language, _, text in BLOCK.findall(page) if language == "text"]
+    (shown,) = [text for text in blocks if "4 trials written to trials" in text]
+    last = [line.strip() for line in shown.splitlines()[-2:]]
+    (split,) = [text for _, title, text in BLOCK.findall(page) if title == "trials/split.toml"]
+    assert last == split.splitlines()[1:]
+    assert not re.search(r"^sed ", page, re.M)
+    assert "-p diagnosis/calm.toml" in page
+
+
 def test_the_cause_it_names_is_the_one_that_was_hidden():
     text = words(PAGE.read_text(encoding="utf-8"))
     north, east = generate_tutorial_logs.CURRENT["north"], generate_tutorial_logs.CURRENT["east"]
