@@ -14,8 +14,8 @@ def suggested_split(trials: Sequence[Trial]) -> tuple[tuple[str, ...], tuple[str
 
     Of each kind of manoeuvre one is tested, then one to the other side, as far as the kind keeps as many to tune to;
     so no more are tested than tune.  The test is the gentlest where there is a choice: what tunes then goes further.
-    Trials cut from one run are no test of each other, so they tune together.  Where that leaves no kind with two trials,
-    the shortest run tests, the last of those; of a single run all tune.
+    Trials cut from one run are no test of each other, so they tune together.  Where that leaves no kind with two
+    trials, the run of fewest tests, the last of those; of a single run all tune.
     """
     runs: dict[str, list[Trial]] = {}
     for trial in trials:

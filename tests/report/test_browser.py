@@ -234,6 +234,27 @@ def test_selecting_a_trial(browser: Any, fit_folder: Path) -> None:
         assert "turning -40 deg" in visit.page.locator(".hint.note").inner_text()
 
 
+@pytest.mark.parametrize("width", [1400, 768, 375])
+def test_controls_stand_above_all_that_they_control(browser: Any, fit_folder: Path, width: int) -> None:
+    """Those of all histories stood below half of them, with the button that saves the whole manoeuvre."""
+    with Visit(browser, fit_folder / "report.html", viewport={"width": width, "height": 900}) as visit:
+        page = visit.page
+
+        def tops(selector: str) -> list[float]:
+            return [box["y"] for one in page.locator(selector).all() if (box := one.bounding_box())]
+
+        histories = tops(".small")
+        assert len(histories) > 6
+        for control in (".from", ".to", ".all", ".differences"):
+            assert max(tops(control)) < min(histories), control
+        assert max(tops(".save")) < min(tops(".track"))
+        page.focus(".differences")
+        page.keyboard.press("Space")  # the charts are made anew, the control is not
+        assert page.evaluate("document.activeElement.className") == "differences"
+        assert page.locator(".small h3", has_text="simulated − measured").count()
+        assert visit.complaints == []
+
+
 def test_saving_a_trial(browser: Any, fit_folder: Path) -> None:
     with Visit(browser, fit_folder / "report.html") as visit:
         with visit.page.expect_download() as started:

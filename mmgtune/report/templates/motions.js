@@ -102,6 +102,8 @@ const Motions = (() => {
             .map(([value, text]) => make("option", { value, textContent: text })));
         bar.append(make("label", {}, "Ships ", this.outlines));
       }
+      /* Of the whole manoeuvre, whatever is shown of it. */
+      bar.append(make("button", { type: "button", className: "save", textContent: "Save as CSV", onclick: () => this.save() }));
       this.canvas = make("canvas", { ariaHidden: "true" });
       this.tip = make("div", { className: "tip", hidden: true });
       const button = (text, label, act) => make("button", { type: "button", textContent: text, ariaLabel: label, title: label, onclick: act });
@@ -120,15 +122,17 @@ const Motions = (() => {
       this.from = make("input", { type: "number", step: "any", className: "from", inputMode: "decimal", onchange: () => this.typed() });
       this.to = make("input", { type: "number", step: "any", className: "to", inputMode: "decimal", onchange: () => this.typed() });
       this.difference = make("input", { type: "checkbox", className: "differences", onchange: () => { this.differences = this.difference.checked; this.panels(); } });
-      const below = make("div", { className: "bar" }, make("label", {}, "from ", this.from, " s"), make("label", {}, "to ", this.to, " s"),
+      /* Of all histories: above the first of them. */
+      this.ruling = make("div", { className: "bar ruling", role: "group", ariaLabel: "All histories" }, make("label", {}, "Histories from ", this.from, " s"), make("label", {}, "to ", this.to, " s"),
         make("button", { type: "button", className: "all", textContent: "Whole time", onclick: () => this.rescale(null) }));
-      if (plan.runs.some((run) => run.truth) && plan.runs.length > 1) below.append(make("label", {}, this.difference, " simulated minus measured"));
-      below.append(make("button", { type: "button", className: "save", textContent: "Save as CSV", onclick: () => this.save() }));
+      if (plan.runs.some((run) => run.truth) && plan.runs.length > 1) this.ruling.append(make("label", {}, this.difference, " simulated minus measured"));
       this.grid = make("div", { className: "grid" });
+      this.few = make("div");
+      this.side.append(this.ruling, this.few);
       this.note = make("p", { className: "hint note" });
       this.holder.append(bar, make("div", { className: "stage" }, make("div", { className: "left" }, this.track, this.time), this.side), this.note,
         make("p", { className: "hint wide", textContent: "Point at a track or a history for the state there. Drag a track to move it, Ctrl and wheel or the buttons zoom; drag across a history to see that time alone." }),
-        below, this.grid);
+        this.grid);
       this.listen();
     }
 
@@ -188,16 +192,16 @@ const Motions = (() => {
         this.pointing(made);
         return made;
       };
-      this.side.replaceChildren(this.beside);
+      this.few.replaceChildren();
       this.grid.replaceChildren();
       const driven = channels.filter((channel) => channel.group !== "state");
       const states = channels.filter((channel) => channel.group === "state");
       const beside = new Set([...driven, ...states].slice(0, Math.max(5 - Math.floor(this.runs.length / 4), 3)));
-      this.drawn = driven.map((channel) => panel(channel, beside.has(channel) ? this.side : this.grid, false));
+      this.drawn = driven.map((channel) => panel(channel, beside.has(channel) ? this.few : this.grid, false));
       if (this.truth && this.runs.length > 1) {
         this.drawn.push(panel({ name: "off", words: "distance off the measured track", unit: "m", group: "off" }, this.grid, false));
       }
-      for (const channel of states) this.drawn.push(panel(channel, beside.has(channel) ? this.side : this.grid, this.differences));
+      for (const channel of states) this.drawn.push(panel(channel, beside.has(channel) ? this.few : this.grid, this.differences));
       this.draw();
     }
 
