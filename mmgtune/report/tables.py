@@ -216,7 +216,7 @@ def coefficients(rows: Iterable[Mapping[str, Any]]) -> Table:
                 short(clean(row["name"])),
                 described(row),
                 coefficient_text(row["pre_determined"]),
-                f"{coefficient_text(row['low'])} … {coefficient_text(row['high'])}",
+                f"{coefficient_text(row['low'])}\u00a0… {coefficient_text(row['high'])}",
                 Cell(coefficient_text(row["value"])),
                 percent(change(row["pre_determined"], row["value"])),
                 shown(row.get("stderr"), 2),
