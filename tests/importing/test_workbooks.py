@@ -52,10 +52,10 @@ def test_sheets_of_the_same_columns_are_a_trial_each(tmp_path):
     for trial, other in zip(found.trials, alone, strict=True):
         close(trial, other)
     (tmp_path / "map.toml").write_text(proposal.text.replace("[trial]", '[trial]\nid = "{part}-{stem}"'))
-    done = run("trials", "import", str(log), "--map", str(tmp_path / "map.toml"), "-o", str(tmp_path / "out"), cwd=tmp_path)
+    done = run("trials", "import", "book.xlsx", "--map", "map.toml", "-o", "out", cwd=tmp_path)
     assert done.code == 0, done.err
     assert {one.stem for one in (tmp_path / "out").glob("*.parquet")} == {"turn-book", "zigzag-book"}
-    again = run("trials", "import", str(log), "--map", str(tmp_path / "map.toml"), "-o", str(tmp_path / "out"), cwd=tmp_path)
+    again = run("trials", "import", "book.xlsx", "--map", "map.toml", "-o", "out", cwd=tmp_path)
     assert again.code == 2
     assert "turn-book.parquet" in again.err
 
