@@ -5,7 +5,7 @@ model           a trial in memory
 from_table      one from a table in memory
 parquet         reading and writing a file; metadata: the facts in it; digest: told from damage; footer: its size
 index_trial     a trial of which only indices are known, and its files
-dataset         folders of files, by_hand: sets in memory; split: which of them tune and which test; splitting: a suggestion
+dataset         folders of files, by_hand: sets in memory; split: which tune and which test; splitting: a suggestion
 unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks, cross_checks; kinematics: what they measure
 set_checks      what is odd about one among others of the same ship
