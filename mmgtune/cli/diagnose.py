@@ -178,7 +178,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     if named and before is not None and after is not None:
         interval = result.gain.interval
         sure = f"; 95 % interval of the share removed: {span(*interval)}" if interval else ", of one trial"
-        lines.append(f"{where}: {before:.4g} -> {after:.4g}{sure}.".replace("\u00a0", " "))
+        of = f" {result.gain.J_is_of}." if result.gain.J_is_of else ""
+        lines.append(f"{where}: {before:.4g} -> {after:.4g}{sure}.{of}".replace("\u00a0", " "))
     elif before is not None:
         lines.append(f"{where}: {before:.4g}, re-tuned without a cause.")
     by_run = [cause.runs for cause in result.causes if cause.runs and not result.interrupted]

@@ -168,6 +168,14 @@ class Gain(Brief):
         return finite(before), finite(after)
 
     @property
+    def J_is_of(self) -> str:
+        """What J counts, where it falls by far less than the error beyond noise does; else ""."""
+        before, after = self.J
+        if before is None or after is None or before - after >= 0.5 * self.share_removed * before:
+            return ""
+        return "J counts positions and heading alone, and their noise"
+
+    @property
     def share_removed(self) -> float:
         """Share of the error above noise that the causes remove."""
         return _share(self.excess)
@@ -233,6 +241,7 @@ class Gain(Brief):
             "trials": [one.trial.id for one in self.compared],
             "J_test_before": self.J[0],
             "J_test_after": self.J[1],
+            "J_is_of": self.J_is_of,
             "share_above_noise_removed": self.share_removed,
             "share_ci95": list(self.interval) if self.interval else None,
             "measures_before": {name: finite(value) for name, value in self.measures("before").items()},

@@ -11,6 +11,7 @@ from .belief import TOLD
 from .gain import MOST
 from .jumped import in_words as jumps_in_words
 from .leftover import change_in_words, in_words
+from .one_clock import clock_rate
 from .retuned import besides, far_off, weighed
 from .retuned import in_words as moved_in_words
 from .verdict import Answer
@@ -94,6 +95,7 @@ def _of_causes(answer: Answer) -> str:
             f"{named} With that put right no other cause shows: the error of the re-tuned model falls from "
             f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
         )
+    named = _joined(named, clock_rate(answer.causes))
     gained = f"{named} {_gained(answer, 'it' if len(answer.causes) == 1 else 'them', _where(answer))}"
     if answer.doubted:
         gained = f"{gained} {answer.doubted.sentence}"

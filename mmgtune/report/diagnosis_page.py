@@ -155,7 +155,8 @@ def _misfit(gain: Mapping[str, Any]) -> Card:
     """J before and after; the share of it that is noise no cause removes."""
     before, after = gain.get("J_test_before"), gain.get("J_test_after")
     moved = change(before, after)
-    return Card("Misfit J, held out", f"{shown(before)} → {shown(after)}", percent(moved), _held_out(gain), tone(moved))
+    note = "; ".join(filter(None, (_held_out(gain), clean(gain.get("J_is_of", "")))))
+    return Card("Misfit J, held out", f"{shown(before)} → {shown(after)}", percent(moved), note, tone(moved))
 
 
 def _motions(record: DiagnosisRecord) -> Section | None:
