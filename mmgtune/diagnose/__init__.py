@@ -10,7 +10,7 @@ shortlist, refitter which hypotheses are refitted in a look; one of them: from w
 refitting, refit  all of a look, the best first; whether one is believed, and what rivals it
 contributions     what each cause brings beside the others; traces; record: how often such an answer was right
 unseen, gain      fitted points on trials they were not fitted to, and what causes gain there
-intervals, leftover, separate         sizes, what is left, the trial that would tell
+intervals, leftover, separate         sizes, what is left, the trial that would tell; one_clock: two scales that are one
 runs, hierarchy, by_run, elsewhere    what differs from run to run: groups, evidence, words, runs held out
 voyages, legs     windows of logs of hours; what differs from voyage to voyage
 evidence          residual forces and short horizons, before any cause

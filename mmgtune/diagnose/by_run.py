@@ -227,10 +227,18 @@ class ByRun:
             size = quantity(value, None if error is None else NORMAL_95 * error, self.unit) + self._of_what
             text += f"{size} in {name_of(self.groups[shown[0]])}, and none for certain in the other {others}"
         else:
-            text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
+            text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what + self._each_known_to(shown)
             where = [name_of(self.groups[k]) for k in shown]
             text += f" in {listed(where, 4)}, and none for certain in the other {others}" if others else ""
         return text + self._all_alike_towards() + self._within() + self._doubted
+
+    def _each_known_to(self, shown: Sequence[int]) -> str:
+        """The error of values that are much the same, where it is larger than they differ by; else ""."""
+        sizes, errors = zip(*(self.size(k) for k in shown), strict=True)
+        half = NORMAL_95 * max(error or 0.0 for error in errors)
+        if not self._much_alike or half <= max(sizes) - min(sizes):
+            return ""
+        return f", each known to ± {error_in_words(half, self.unit)}"
 
     @property
     def _doubted(self) -> str:
