@@ -338,8 +338,8 @@ def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
     assert about_north.endswith(", from 0°")
     assert runs((10.2, 239.6), (10.2, 59.6)).sentence.startswith("The wind differed from run to run")
     # An error common to all runs, as of the force of a wind, is larger than they differ by: the range is no interval.
-    assert runs((10.2, 240.0), (10.5, 242.0)).sentence == (
-        "The wind was much the same in each run: 10.2 to 10.5 m/s, each known to ± 1.8 m/s, from 241°"
+    assert runs((10.2, 240.0), (11.4, 242.0)).sentence == (
+        "The wind was much the same in each run: 10.2 to 11.4 m/s, each known to ± 1.8 m/s, from 241°"
     )
 
 
