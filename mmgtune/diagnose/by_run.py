@@ -17,7 +17,7 @@ from ..effects import Effect, Visited
 from ..fitting.box import AT
 from ..phrases import listed
 from ..trial import Trial, visited_by
-from ..units import NORMAL_95
+from ..units import DIMENSIONLESS, NORMAL_95
 from .intervals import Estimate
 from .runs import IN_WORDS, groups_of, name_of
 from .wording import error_in_words, quantity, range_in_words
@@ -225,11 +225,13 @@ class ByRun:
         if len(shown) == 1 and others:
             value, error = self.size(shown[0])
             size = quantity(value, None if error is None else NORMAL_95 * error, self.unit) + self._of_what
-            text += f"{size} in {name_of(self.groups[shown[0]])}, and none for certain in the other {others}"
+            where = name_of(self.groups[shown[0]])
+            text += f"{self._number_of}{size} in {where}, and none for certain in the other {others}"
         else:
-            text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what + self._each_known_to(shown)
-            where = [name_of(self.groups[k]) for k in shown]
-            text += f" in {listed(where, 4)}, and none for certain in the other {others}" if others else ""
+            of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
+            text += f"{self._number_of}{of_all}{self._each_known_to(shown)}"
+            several = [name_of(self.groups[k]) for k in shown]
+            text += f" in {listed(several, 4)}, and none for certain in the other {others}" if others else ""
         return text + self._all_alike_towards() + self._within() + self._doubted
 
     def _each_known_to(self, shown: Sequence[int]) -> str:
@@ -252,7 +254,7 @@ class ByRun:
         sizes = [self.size(k)[0] for k in range(len(self.groups))]
         common = max(error or 0.0 for _, error in map(self.size, range(len(self.groups))))
         half, between = (error_in_words(NORMAL_95 * error, self.unit) for error in (common, beside))
-        of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
+        of_all = self._number_of + range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
         return f"{of_all}, known to ± {between} beside each other and to ± {half} all together"
 
     @property
@@ -279,6 +281,12 @@ class ByRun:
         """What a factor is of, behind the number."""
         factor = self.effect.parameters[self.variant[0]].null == 1.0 and not self.effect.subject
         return " times the model's" if factor else ""
+
+    @property
+    def _number_of(self) -> str:
+        """What a number without a unit is, before it, where the effect has several that may differ."""
+        subject = self.effect.subject or self.effect.title
+        return f"{self._what} " if self.unit in DIMENSIONLESS and self._what != subject else ""
 
     def _within(self) -> str:
         """What changed within runs, in words."""

@@ -234,8 +234,8 @@ def of_loading(values, stderr, apart):
 def test_what_is_common_to_all_errors_is_told_once():
     found = of_loading((0.99, 0.81, 0.93), 0.03, 0.003)
     assert found.sentence == (
-        "The loading differed from run to run: 0.81 to 0.99, known to ± 0.0059 beside each other and to ± 0.059 all "
-        "together"
+        "The loading differed from run to run: draught over the profile's 0.81 to 0.99, known to ± 0.0059 beside each "
+        "other and to ± 0.059 all together"
     )
     assert found.table()[0] == ("run", "draught over the profile's", "from the mean")
     assert found.table()[1] == ("run0", "0.990 ± 0.059", "0.0800 ± 0.0059")
@@ -354,7 +354,7 @@ def test_values_known_no_better_beside_each_other_are_told_alone(stderr, apart):
 def test_runs_in_which_it_shows_are_named():
     """A compass that was off on the second of two days was "none for certain in 3 of 6"."""
     found = of_loading((0.81, 0.99, 0.8, 1.0), 0.03, None)
-    assert found.sentence.endswith(": 0.8 to 0.81 in run0 and run2, and none for certain in the other 2")
+    assert found.sentence.endswith(": draught over the profile's 0.8 to 0.81 in run0 and run2, and none for certain in the other 2")
 
 
 def test_values_of_which_none_shows_are_not_told_to_differ():
