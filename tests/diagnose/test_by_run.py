@@ -354,7 +354,9 @@ def test_values_known_no_better_beside_each_other_are_told_alone(stderr, apart):
 def test_runs_in_which_it_shows_are_named():
     """A compass that was off on the second of two days was "none for certain in 3 of 6"."""
     found = of_loading((0.81, 0.99, 0.8, 1.0), 0.03, None)
-    assert found.sentence.endswith(": draught over the profile's 0.8 to 0.81 in run0 and run2, and none for certain in the other 2")
+    assert found.sentence.endswith(
+        ": draught over the profile's 0.8 to 0.81 in run0 and run2, and none for certain in the other 2"
+    )
 
 
 def test_values_of_which_none_shows_are_not_told_to_differ():
