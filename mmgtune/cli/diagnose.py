@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -156,6 +157,7 @@ def _of_runs(one: ByRun) -> list[str]:
 
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """Plain-text summary of the result."""
+    from ..diagnose.folder import CALM
     from ..diagnose.retuned import in_words as in_words_of_retuned
     from ..profile.doubts import in_words
     from ..report.wording import span
@@ -199,4 +201,6 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     lines += ["", *(f"Note: {words}" for words in notes)] if notes else []
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
+    if (calm := Path(folder) / CALM).is_file():
+        lines.append(f"For predictions in calm water, without what was of the day: {calm}")
     return "\n".join(lines)

@@ -10,6 +10,7 @@ import os
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from typing import Any, NoReturn
 
 from ..files import abandon
@@ -39,7 +40,7 @@ def stop_at_once(words: str) -> Handler:
 
 def continued(folder: Path) -> str:
     """What to say of a run whose folder holds what was done of it."""
-    return f"what is done is in {folder}; --resume --out {folder} continues"
+    return f"what is done is in {folder}; --resume --out {quote(str(folder))} continues"
 
 
 def leave(number: int, words: str) -> NoReturn:

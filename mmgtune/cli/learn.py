@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import isfinite
+from shlex import quote
 from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
@@ -197,7 +198,7 @@ def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -
     lines = [f"type {found['type']}: {found['recipe']}; {len(members)} x {found['width']} units"]
     learned = f"learned from {counted(len(found['learned_from']), 'trial')}"
     if found["chosen_by"]:
-        lines += [f"{learned}, chosen by {len(found['chosen_by'])} others", ""]
+        lines += [f"{learned}, chosen by {counted(len(found['chosen_by']), 'other')}", ""]
         lines.append(f"{'seed':>6}{'best step':>11}{'L_MSE of validation':>22}")
         lines += [f"{row['seed']:>6}{row['best_step']:>11}{row['score']:>22.4g}" for row in members]
     else:
@@ -258,6 +259,6 @@ def _ending(found: dict[str, Any], events: list[dict[str, Any]], folder: str, re
         for event in events
     ]
     if found["interrupted"]:
-        lines += ["", f"Stopped early; --resume --out {folder} continues."]
+        lines += ["", f"Stopped early; --resume --out {quote(str(folder))} continues."]
     where = f"Report: {folder}/report.html" if report else ""
     return [*lines, "", f"{found['wall_s']:.1f} s. Model: {folder}/model.safetensors. {where}".rstrip()]

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -94,7 +95,7 @@ class Progress:
         if not interrupted:
             self._saved = f"the results in {self.folder} were complete by then"
         else:
-            self._saved = f"{self.kept} is in {self.folder}; --resume --out {self.folder} continues"
+            self._saved = f"{self.kept} is in {self.folder}; --resume --out {quote(str(self.folder))} continues"
 
     def leave(self) -> None:
         """End with the exit code of a command that was stopped, where it was; called when everything is said."""
@@ -108,7 +109,7 @@ class Progress:
         if self.stopped:
             if self._status is not None:
                 os.write(2, b"\x1b[?25h")  # the cursor, which the status line hides
-            last = f"stopped at once; --resume --out {self.folder} continues from the last checkpoint"
+            last = f"stopped at once; --resume --out {quote(str(self.folder))} continues from the last checkpoint"
             interrupts.leave(number, self._saved or last)
         self._signal = number
         interrupts.tell(f"finishing this step, then saving {self.kept}; press Ctrl-C again to stop at once")

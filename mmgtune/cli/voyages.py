@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from ..errors import TrialError
@@ -51,7 +52,9 @@ def on_voyages(
                 list(profiles), data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line()
             )
         except TrialError:
-            c.say(f"what is done so far is kept: once the voyages are mended, --resume --out {folder} goes on")
+            c.say(
+                f"what is done so far is kept: once the voyages are mended, --resume --out {quote(str(folder))} goes on"
+            )
             raise
         document = write_voyages(result, folder, overwrite=True)
         progress.saved(result.interrupted)

@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+from mmgtune.cli import interrupts
+
 WATCHED = """
 import os, signal, sys
 
@@ -124,3 +126,8 @@ fitting.fit = interrupted
         "interrupted: stopped at once; --resume --out run continues from the last checkpoint"
     )
     assert list((tmp_path / "run").iterdir()) == []
+
+
+def test_what_goes_on_is_told_as_it_may_be_typed(tmp_path):
+    told = interrupts.continued(tmp_path / "my run")
+    assert told.endswith(f"--resume --out '{tmp_path}/my run' continues")

@@ -95,6 +95,9 @@ def test_the_profile_keeps_nothing_of_a_run_and_the_record_all(currents, tmp_pat
     assert "| turn_m20 |" in page
     assert "differed from run to run" in page
     told = summary(result, "run", report=True)
+    assert "calm water" not in told  # where no such profile is written
+    (tmp_path / "run" / "calm.toml").write_text("")
+    assert summary(result, f"{tmp_path}/run", report=True).endswith(f"of the day: {tmp_path}/run/calm.toml")
     assert [line.split()[0] for line in told.splitlines() if " m/s   " in line] == sorted(TUNING)
 
 
