@@ -11,12 +11,15 @@ from . import units
 from .errors import MmgtuneError, Problem, among, brief
 from .limits import NESTING
 
+MAP = "the map"
+"""What a map of a log is called in messages."""
+
 
 def toml_of(text: str, what: str, where: str, error: type[MmgtuneError], *, profile: bool = False) -> dict[str, Any]:
     """The tables written in ``text``; a byte-order mark in front is passed over.
 
     profile  whether a ship profile is wanted
-    Raises ``error`` where ``what``, such as "the map", is not TOML, or is a ship profile where none is wanted.
+    Raises ``error`` where ``what``, such as ``MAP``, is not TOML, or is a ship profile or a map where none is wanted.
     """
     try:
         found = tomllib.loads(text.removeprefix("\ufeff"))
@@ -31,6 +34,11 @@ def toml_of(text: str, what: str, where: str, error: type[MmgtuneError], *, prof
         there = f"it has [ship] and [hull], and {what} is wanted here"
         fix = f"give {what}, and the profile where a ship is wanted"
         raise error(Problem("this is a ship profile", where, there, fix))
+    if what != MAP and {"time", "columns"} <= found.keys() and not {"ship", "hull"} & found.keys():
+        there = f"it has [time] and [columns], and {what} is wanted here"
+        raise error(
+            Problem("this is the map of a log", where, there, f"give {what}, and the map where logs are imported")
+        )
     return found
 
 

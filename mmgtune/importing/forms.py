@@ -61,6 +61,9 @@ def form_of(log: Path) -> str:
         if re.match(begins, text):
             why = "logs are text tables, Parquet, .xlsx, MATLAB files and NMEA 0183"
             raise LogError(Problem(f"the log is {kind}", str(log), why, fix))
+    if log.suffix.lower() == ".toml":
+        why, fix = "it is TOML, as profiles, splits and maps are", "give the log itself; a map goes behind --map"
+        raise LogError(Problem("the file is no log", str(log), why, fix))
     return "csv"
 
 

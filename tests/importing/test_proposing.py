@@ -13,6 +13,7 @@ from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.proposing.sampling import heading, sample_of
 from mmgtune.importing.proposing.words import quantity_named, unit_named
+from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG, KNOT
 from tests.command import run
@@ -405,6 +406,13 @@ def test_answers_make_the_map_whole(tmp_path):
     line = proposal.text[start : proposal.text.index("\n", start)]
     trial = imported(log, proposal.text.replace(line, 'n = { value = "100 rpm" }'))
     assert trial.n == pytest.approx(100.0 / 60.0)
+
+
+def test_a_profile_is_no_log(tmp_path):
+    path = tmp_path / "ship.toml"
+    path.write_text(load_profile("suzaku").text)
+    assert "the file is no log" in refusal(lambda: propose_map(path))
+    assert "it is TOML" in refusal(lambda: imported(path, MAP))
 
 
 def test_a_log_that_tells_nothing_is_asked_by_names(tmp_path):
