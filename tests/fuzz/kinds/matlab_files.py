@@ -16,6 +16,7 @@ from tests.importing.made import MAP, logged, turn
 from ..mutating import mutated_bytes, pick, several
 from . import Files, Kind
 from .csv_logs import imports
+from .proposals import proposes
 
 ODD: tuple[Any, ...] = (
     np.zeros((0, 0)), np.zeros((3, 3, 3)), np.array([[1, "a"]], dtype=object), "text", {"a": {"b": {"c": [1.0]}}}, 1.0,
@@ -84,8 +85,8 @@ def _wrapped(rng: np.random.Generator, content: bytes) -> bytes:
 
 
 def run(folder: Path) -> str:
-    """Import it."""
-    return imports(folder, "log.mat")
+    """Propose a map for it, and import it by another one."""
+    return proposes(folder, "log.mat") + "; " + imports(folder, "log.mat")
 
 
 KIND = Kind("matlab", make, run)
