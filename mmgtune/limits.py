@@ -69,6 +69,7 @@ SHEET_ROWS = Limit(1 << 20, "rows", "a sheet", "save it again with a spreadsheet
 SHEET_CELLS = Limit(20_000_000, "cells", "a sheet", "save it as CSV, or split it")
 MATLAB_BYTES = Limit(1 << 29, "bytes", "a MATLAB file", "save only the columns that are needed, or split it")
 LOG_PARTS = Limit(200, "parts", "a record", "correct the clock's stamps in the log, or split it")
+LOG_RUNS = Limit(1000, "runs", "a log", "split the log")
 GRID_SAMPLES = Limit(1_000_000, "samples", "a trial", "give a longer step, or cut the log")
 GRID_PER_ROW = 200
 """Samples that a row of a log may become, beyond GRID_FREE of all: short steps add none that were measured."""

@@ -30,8 +30,9 @@ from .forms import form_of, refuse_binary
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, hold_step, missing_between, on_grid, stretches
 from .jumps import cut_at_jumps
-from .mapping import LogMap
-from .matlab_columns import read_matlab
+from .mapping import ALL, LogMap
+from .matlab import variables
+from .matlab_columns import read_matlab, runs_in
 from .means import with_mean
 from .nmea import read_nmea
 from .parquet_log import read_parquet
@@ -43,7 +44,7 @@ from .record import Record, record_of, time_in_seconds
 from .sides import as_cells_say
 from .table import Table
 from .text import binary, read_text, start_of
-from .workbook import read_workbook
+from .workbook import logs_among, outlines_of, read_workbook
 from .yaw import heading_recovered
 
 REPORT = "import-report.json"
@@ -146,7 +147,7 @@ def import_logs(
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 made = _trials(log, own, step)
         except LogError as error:
-            problems += error.problems
+            problems += [_of_part(one, own.part) if own.part else one for one in error.problems]
             continue
         trials += [trial for trial, _ in made]
         quality += [one for _, one in made]
@@ -181,15 +182,44 @@ def paths_of(logs: Path | str | Sequence[Path | str]) -> tuple[Path, ...]:
 
 
 def _each(log_map: LogMap, log: Path) -> tuple[LogMap, ...]:
-    """The maps of one log: one for each of its parts, whose names then have that of the part in them."""
+    """The maps of one log: one for each of its parts, whose names then have that of the part in them.
+
+    Raises LogError where all parts are wanted of a log that cannot be read.
+    """
     own = log_map.of(log)
+    parts = _all_parts(log, own) if own.part == ALL else own.of_parts()
     template = own.id if "{part}" in own.id else f"{own.id}_{{part}}"
-    return tuple(replace(one, id=template) for one in own.of_parts()) or (own,)
+    found: dict[str, LogMap] = {}
+    for one in parts:
+        named = replace(one, id=template)
+        name = _name(named, log)
+        if name.lower() in map(str.lower, found):  # run 1 and run_1, as files are called
+            named = replace(one, id=f"{template}_{len(found) + 1}")
+        found[_name(named, log)] = named
+    return tuple(found.values()) or (own,)
+
+
+def _all_parts(log: Path, log_map: LogMap) -> tuple[LogMap, ...]:
+    """A map for each sheet of a workbook that holds a log, or for each run in a MATLAB file."""
+    if log_map.variable:
+        parts = runs_in(variables(log)) or [""]
+        return tuple(replace(log_map, variable=part) for part in parts)
+    return tuple(replace(log_map, sheet=part) for part in logs_among(outlines_of(log)) or [""])
+
+
+def _of_part(problem: Problem, part: str) -> Problem:
+    """A problem in a part of a log, which says where that is."""
+    return problem if f"'{part}'" in problem.where else replace(problem, where=f"{problem.where}, in '{part}'")
 
 
 def _name(log_map: LogMap, log: Path) -> str:
     """The name of the trial that a log becomes."""
-    return re.sub(r"[^\w.-]+", "_", _written(log_map.id, log, log_map.part)).strip("._") or "trial"
+    return (
+        re.sub(r"[^\w.-]+", "_", _written(log_map.id, log, re.sub(r"[^\w-]+", "_", log_map.part).strip("_"))).strip(
+            "._"
+        )
+        or "trial"
+    )
 
 
 def _written(template: str, log: Path, part: str) -> str:

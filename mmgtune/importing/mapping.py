@@ -12,6 +12,8 @@ from ..trial.schema import MAIN_INPUTS
 ASKS = "?"
 """How a value begins that is a question to who uses the map."""
 FORMATS = ("csv", "parquet", "nmea", "xlsx", "mat")
+ALL = "*"
+"""How a map says that every sheet or run of a log becomes a trial."""
 PARTS = ("sheet", "variable")
 """Keys of [log] that name one of several runs in a log, or several."""
 TIME_FORMATS = ("number", "iso", "clock", "hhmmss", "mm:ss", "date", "dmy", "mdy", "ymd")
@@ -152,7 +154,7 @@ class LogMap:
     variable    of a MATLAB file, a structure or a matrix that holds the columns, such as "log" or "data.run(2)"; ""
                 where they are variables themselves
     parts       sheets or variables that each become a trial of one log, the first of them also in ``sheet`` or
-                ``variable``; () where a log is one trial
+                ``variable``; () where a log is one trial. Of ALL, in their place, there are as many as a log has
     thousands   what divides thousands, "none" for nothing, None where each column has to show it
     fields      how many a row of a log has, None where the map does not say
     axes        "ship" or "earth": of u and v; None where the map does not say

@@ -25,6 +25,8 @@ LYING = 64
 """Rows up to which a matrix that is far wider than high has a row for each quantity."""
 RUN = 4
 """Fields, or columns, that two runs have in common at least."""
+RISING = 0.9
+"""Share of steps that go up from which numbers may be time."""
 _DATEVEC = ((1900, 2200), (1, 12), (1, 31), (0, 24), (0, 59), (0, 60.001))
 """Least and most of the columns that ``datevec`` and ``clock`` make."""
 
@@ -70,7 +72,7 @@ def columns_of(path: Path, variable: str = "") -> Columns:
     held = variables(path)
     notes: list[str] = []
     several: list[str] = [] if variable else runs_in(held)
-    if several:
+    if len(several) > 1:
         variable = several[0]
         shown = listed([f"'{one}'" for one in several], 6)
         notes.append(
@@ -84,6 +86,10 @@ def columns_of(path: Path, variable: str = "") -> Columns:
     lengths = [len(value) for value in arrays.values()]
     usual = max(set(lengths), key=lambda length: (lengths.count(length), length), default=0)
     columns = {name: value for name, value in arrays.items() if len(value) == usual}
+    together = list(dict.fromkeys(name.partition(".")[0] for name in columns if "." in name))
+    if len(together) > 1:
+        shown = listed([f"'{one}'" for one in together], 6)
+        notes.append(f"columns of {shown} are taken together, as they have as many rows")
     uneven = {
         name: f"{len(value)} values"
         for name, value in arrays.items()
@@ -99,38 +105,77 @@ def columns_of(path: Path, variable: str = "") -> Columns:
         notes.append(f"left out, as the columns have {usual} rows: {shown}")
     if unread := [f"'{name}' ({kind})" for name, kind in other.items() if "complex" in kind or "dimensions" in kind]:
         notes.append(f"left out: {listed(unread, 6)}")
-    return Columns(list(columns), list(columns.values()), other | uneven, notes, several[0] if several else "")
+    return Columns(list(columns), list(columns.values()), other | uneven, notes, variable if several else "")
 
 
-def runs_in(held: Mapping[str, Value], within: str = "") -> list[str]:
+def runs_in(held: Mapping[str, Value]) -> list[str]:
     """Names of structures, or of matrices, that hold a run each; empty where there are no two."""
-    for name, value in held.items():
-        if isinstance(value, list) and isinstance(value[0], dict) and all(map(_holds_time, value)):
-            return [f"{within}{name}({k})" for k in range(1, len(value) + 1)]
-    kinds: dict[Any, list[str]] = {}
-    lengths: dict[Any, set[int]] = {}
-    for name, value in held.items():
-        if isinstance(value, dict) and len(value) >= RUN and _holds_time(value):
-            kinds.setdefault(frozenset(value), []).append(name)
-        elif isinstance(value, np.ndarray) and value.ndim == 2 and RUN <= value.shape[1] < value.shape[0]:
-            kinds.setdefault(value.shape[1], []).append(name)
-            lengths.setdefault(value.shape[1], set()).add(len(value))
-    # Matrices as long as each other may hold one run.
-    several = [names for kind, names in kinds.items() if len(names) > 1 and len(lengths.get(kind, (1, 2))) > 1]
-    if several:
-        return [f"{within}{name}" for name in max(several, key=len)]
-    inside = [name for name, value in held.items() if isinstance(value, dict)]
-    if len(inside) == 1 and not within.count("."):
-        value = held[inside[0]]
-        return runs_in(value, f"{within}{inside[0]}.") if isinstance(value, dict) else []
-    return []
+    structures = _structures(held)
+    fields = {path: frozenset(value) for path, value in structures.items() if _is_run(value)}
+    # Runs have most of their fields in common, as both sides of one ship have, which lack the time.
+    groups = [[other for other in fields if _in_common(fields[one], fields[other])] for one in fields]
+    found = max(groups, key=len, default=[])
+    if len(found) > 1:
+        around = list(dict.fromkeys(path.rpartition(".")[0] for path in found))
+        # What stands in a structure beside others, as navigation beside the engine, is a part of the run that it is.
+        parts = len(around) == len(found) and all(
+            sum(isinstance(one, dict) for one in structures.get(path, {}).values()) > 1 for path in around
+        )
+        return around if parts else found
+    upright = {name: _upright(one) for name, one in held.items() if isinstance(one, np.ndarray) and one.ndim == 2}
+    widths = {
+        name: one.shape[1] for name, one in upright.items() if RUN <= one.shape[1] < len(one) and _rises(one[:, 0])
+    }
+    return max(([one for one in widths if widths[one] == width] for width in widths.values()), key=len, default=[])
 
 
-def _holds_time(value: Value) -> bool:
-    """Whether a field of a structure rises from value to value."""
-    fields = value.values() if isinstance(value, dict) else ()
-    vectors = (one.ravel() for one in fields if isinstance(one, np.ndarray) and one.size == max(one.shape) > 2)
-    return any(bool((np.diff(one) > 0.0).all()) for one in vectors)
+def _upright(matrix: FloatArray) -> FloatArray:
+    """A matrix with a column for each quantity: one that has few rows, and is far wider than high, turned."""
+    return matrix.T if 1 < matrix.shape[0] <= LYING and matrix.shape[1] > 8 * matrix.shape[0] else matrix
+
+
+def _structures(held: Mapping[str, Value], within: str = "") -> dict[str, dict[str, Value]]:
+    """All structures by their names, such as "data.run(2)", those in each other too."""
+    found: dict[str, dict[str, Value]] = {}
+    for name, value in held.items():
+        several = [value] if isinstance(value, dict) else value if isinstance(value, list) else []
+        for k, one in enumerate(several, 1):
+            if isinstance(one, dict) and _series(one) is None:
+                path = f"{within}{name}" if isinstance(value, dict) else f"{within}{name}({k})"
+                found |= {path: one} | _structures(one, f"{path}.")
+    return found
+
+
+def _in_common(one: frozenset[str], other: frozenset[str]) -> bool:
+    """Whether two structures have most of their fields in common."""
+    return len(one & other) >= max(min(RUN, len(one), len(other)), 0.5 * len(one))
+
+
+def _is_run(fields: Mapping[str, Value]) -> bool:
+    """Whether a structure holds columns of which one is time, by its numbers: timeseries, dates, or what rises."""
+    if sum(_series(one) is not None for one in fields.values() if isinstance(one, dict)) > 1:
+        return True
+    if isinstance(fields.get("signals"), (dict, list)) and isinstance(fields.get("time"), np.ndarray):
+        return True
+    if (
+        isinstance(matrix := fields.get("data"), np.ndarray)
+        and matrix.ndim == 2
+        and RUN <= matrix.shape[1] < len(matrix)
+    ):
+        return True
+    vectors = [one for one in fields.values() if isinstance(one, np.ndarray) and one.size == max(one.shape) > 2]
+    dates = any(
+        (isinstance(one, list) and len(one) > 2) or (isinstance(one, np.ndarray) and _are_dates(one))
+        for one in fields.values()
+    )
+    return len(vectors) >= RUN - 1 and (dates or any(map(_rises, vectors)))
+
+
+def _rises(values: FloatArray) -> bool:
+    """Whether numbers rise from one to the next, but for a few that repeat or are missing."""
+    known = values.ravel()[np.isfinite(values.ravel())]
+    steps = np.diff(known)
+    return len(steps) > 1 and bool(np.mean(steps > 0.0) > RISING and np.mean(steps < 0.0) < 1.0 - RISING)
 
 
 def _at(held: Mapping[str, Value], variable: str, path: Path) -> Value:
@@ -165,18 +210,18 @@ def _spread(held: Mapping[str, Value], notes: list[str]) -> Flat:
         if isinstance(value, dict) and (series := _series(value)) is not None:
             if times is None:
                 times = series[0]
-                out["Time"] = times
+                _join(out, {"Time": times}, name)
             if not np.array_equal(times, series[0]):
                 out[name] = Other("series with times of its own")
                 notes.append(f"left out: '{name}', which has times of its own; bring it to those of the others first")
                 continue
-            out |= _of_matrix(name, series[1], {}, notes)
+            _join(out, _of_matrix(name, series[1], {}, notes), name)
         elif isinstance(value, dict):
             prefix = f"{name}." if several else ""
             inside = _logged_signals(value, notes) or _spread(value, notes)
-            out |= {f"{prefix}{key}": one for key, one in inside.items()}
+            _join(out, {f"{prefix}{key}": one for key, one in inside.items()}, name)
         elif isinstance(value, np.ndarray):
-            out |= _of_matrix(name, value, held, notes)
+            _join(out, _of_matrix(name, value, held, notes), name)
         elif isinstance(value, list) and isinstance(value[0], dict):
             out[name] = Other(f"array of {len(value)} structures")
         elif isinstance(value, list):
@@ -186,22 +231,36 @@ def _spread(held: Mapping[str, Value], notes: list[str]) -> Flat:
     return out
 
 
+def _join(out: Flat, more: Flat, name: str) -> None:
+    """Take more columns; those of a name that is taken have that of what they stand in before it."""
+    for key, value in more.items():
+        own = key if key not in out else f"{name}.{key}"
+        out[own if own not in out else f"{own} {len(out) + 1}"] = value
+
+
 def _of_matrix(name: str, value: FloatArray, beside: Mapping[str, Value], notes: list[str]) -> Flat:
     """Columns of a matrix, by what names them beside it; a vector as it is."""
     if value.ndim > 2:
         return {name: Other(f"array of {value.ndim} dimensions")}
     if min(value.shape) <= 1:
         return {name: value.ravel()}
-    if value.shape[0] <= LYING and value.shape[1] > 8 * value.shape[0]:
+    if (upright := _upright(value)) is not value:
         notes.append(f"'{name}' has {value.shape[0]} rows and {value.shape[1]} columns: each row is read as a column")
-        value = value.T
+        value = upright
     LOG_COLUMNS.hold(value.shape[1], name[:80], LogError)
-    if value.shape[1] == len(_DATEVEC) and all(
-        bool(((value[:, k] >= low) & (value[:, k] <= high)).all()) for k, (low, high) in enumerate(_DATEVEC)
-    ):
+    if _are_dates(value):
         return {name: [_stamp(row) for row in value]}
     names = _names_beside(beside, value.shape[1])
     return {names[k] if names else f"{name} {k + 1}": value[:, k] for k in range(value.shape[1])}
+
+
+def _are_dates(value: FloatArray) -> bool:
+    """Whether the rows of a matrix are dates as ``datevec`` makes them."""
+    return (
+        value.ndim == 2
+        and value.shape[1] == len(_DATEVEC)
+        and all(bool(((value[:, k] >= low) & (value[:, k] <= high)).all()) for k, (low, high) in enumerate(_DATEVEC))
+    )
 
 
 def _names_beside(beside: Mapping[str, Value], width: int) -> list[str]:

@@ -18,7 +18,7 @@ from ..phrases import counted
 from .doubts import shifted_lever
 from .forms import form_of
 from .importer import Imported, import_logs, paths_of
-from .mapping import ASKS, PARTS, LogMap
+from .mapping import ALL, ASKS, PARTS, LogMap
 from .proposing.find_rest import RECOVERED
 from .proposing.finder import MOST_LOGS, Finder
 from .proposing.finding import found_in
@@ -155,9 +155,12 @@ def _of_all(samples: list[Sample]) -> list[Sample]:
     others = {key for key in PARTS if any(one.layout.get(key) != first.layout.get(key) for one in samples)}
     if not others:
         return samples
-    layout = {key: value for key, value in first.layout.items() if key not in others}
-    note = f"the logs differ in their {' and '.join(f'{key}s' for key in PARTS if key in others)}: of each one is read"
-    return [replace(first, layout=layout, notes=[*first.notes, note]), *samples[1:]]
+    layout = {key: ALL if key in others else value for key, value in first.layout.items()}
+    what = " and ".join(f"{key}s" for key in PARTS if key in others)
+    note = f"the logs differ in their {what}: each that holds a log becomes a trial"
+    return [replace(first, layout=layout | dict.fromkeys(others, ALL), notes=[note])] + [
+        replace(one, notes=[]) for one in samples[1:]
+    ]
 
 
 def _made(finder: Finder, paths: tuple[Path, ...], left: tuple[str, ...]) -> Proposal:

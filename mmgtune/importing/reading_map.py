@@ -239,7 +239,7 @@ class _Reader(TomlReader):
             one = self.text_of("log", table, key)
             return [one] if one else []
         if value and all(isinstance(one, str) and one for one in value) and len({*value}) == len(value):
-            limits.LOG_PARTS.hold(len(value), f"{self.path}, log.{key}", LogError)
+            limits.LOG_RUNS.hold(len(value), f"{self.path}, log.{key}", LogError)
             return value
         why = "each is to be a name of its own"
         self.problem(f"'log.{key}' is {brief(value)}", "log", key, why, f'write {key} = ["...", "..."], or one name')

@@ -9,7 +9,7 @@ import warnings
 import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from .cells import table_of
 from .mapping import LogMap
 from .numerals import number_in
 from .table import Table
+from .with_units import is_with_unit
 
 ENTRIES = 2000
 """Parts that a workbook may have."""
@@ -31,8 +32,10 @@ OLD = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 
 LOOKED_AT = 2000
 """Rows of a sheet that are looked at to tell which holds a log."""
-SHORT = 0.2
-"""Share of the rows of numbers of the longest sheet, of those looked at, from which another one is a log too."""
+COLUMNS = 4
+"""Numbers in a row from which it may be one of a log: time, and a position and heading at least."""
+SMALL = 0.2
+"""Share of the numbers of the largest sheet, of the rows looked at, from which another one is a log too."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Outline:
-    """A sheet before it is read: its first rows, how many of those are rows of numbers, and whether it is hidden."""
+    """A sheet before it is read: its first rows, how many numbers are in rows of them, and whether it is hidden."""
 
     name: str
     hidden: bool
@@ -127,16 +130,18 @@ def _outlines(book: Any, path: Path) -> list[Outline]:
         raise LogError(Problem("the workbook has no sheet with cells", str(path), fix="give another file"))
     for one in book.worksheets:
         rows = _rows(one, path, LOOKED_AT)
-        outlines.append(Outline(one.title, one.sheet_state != "visible", rows, sum(map(_of_numbers, rows))))
+        outlines.append(Outline(one.title, one.sheet_state != "visible", rows, _numbers_in(rows, COLUMNS)))
+    if not any(one.numbers for one in outlines):
+        return [replace(one, numbers=_numbers_in(one.rows, 2)) for one in outlines]
     return outlines
 
 
 def logs_among(outlines: Sequence[Outline]) -> list[str]:
-    """Names of the sheets that hold logs: of those that are not hidden all with rows of numbers, but for short ones."""
-    shown = [one for one in outlines if not one.hidden and one.numbers > 1]
-    shown = shown or [one for one in outlines if one.numbers > 1]
+    """Names of the sheets that hold logs: of those that are not hidden all with rows of numbers, but for small ones."""
+    shown = [one for one in outlines if not one.hidden and one.numbers > 0]
+    shown = shown or [one for one in outlines if one.numbers > 0]
     most = max((one.numbers for one in shown), default=0)
-    return [one.name for one in shown if one.numbers >= SHORT * most]
+    return [one.name for one in shown if one.numbers >= SMALL * most]
 
 
 def passed_over(outlines: Sequence[Outline], read: str) -> list[str]:
@@ -238,11 +243,18 @@ def _formula(path: Path, sheet: str, names: list[str], empty: list[str]) -> str:
     return ""
 
 
-def _of_numbers(row: Sequence[Any]) -> bool:
-    """Whether a row holds two numbers at least, also such that are written as texts, and little else."""
-    cells = [cell for cell in row if cell is not None]
-    numbers = sum(isinstance(cell, float | int) or _numeric(cell) for cell in cells)
-    return numbers > 1 and 2 * numbers >= len(cells)
+def _numbers_in(rows: Sequence[Sequence[Any]], least: int) -> int:
+    """How many numbers stand in rows that hold so many at least and little else; also as texts, or with a unit."""
+    total = 0
+    for row in rows:
+        cells = [cell for cell in row if cell is not None]
+        numbers = sum(isinstance(cell, float | int) or _numeric(cell) or _has_unit(cell) for cell in cells)
+        total += numbers if numbers >= least and 2 * numbers >= len(cells) else 0
+    return total
+
+
+def _has_unit(cell: Any) -> bool:
+    return isinstance(cell, str) and is_with_unit(cell.strip()[:LONGEST])
 
 
 def _numeric(cell: Any) -> bool:

@@ -6,7 +6,8 @@ import pytest
 import scipy.io
 
 from mmgtune.importing import import_logs, parse_map, propose_map
-from mmgtune.importing.matlab_columns import columns_of
+from mmgtune.importing.matlab import variables
+from mmgtune.importing.matlab_columns import columns_of, runs_in
 from mmgtune.importing.proposing.words import numbered, quantity_named
 from mmgtune.units import DEG
 
@@ -111,7 +112,7 @@ def test_several_runs_are_told_and_each_can_be_read(tmp_path, held, runs):
     lengths = [len(columns_of(log, run).columns[0]) for run in runs]
     assert lengths == [len(HELD["t"]), len(SECOND["t"])]
     found = import_logs([log], proposal.map(), ".", dry_run=True)
-    parts = [run.replace("(", "_").replace(")", "") for run in runs]
+    parts = [run.replace("(", "_").replace(")", "").replace(".", "_") for run in runs]
     assert [trial.id for trial in found.trials] == [f"log_{part}" for part in parts]
     assert [trial.n_samples for trial in found.trials] == lengths
     # A map that names one reads it alone; one that names none says which it reads.
@@ -122,6 +123,83 @@ def test_several_runs_are_told_and_each_can_be_read(tmp_path, held, runs):
     if held != "two matrices":  # whose columns have the matrix's name then
         unsaid = import_logs([log], parse_map(proposal.text.replace(whole, "")), ".", dry_run=True)
         assert any(f"holds 2 runs, '{runs[0]}' and" in note for note in unsaid.quality[0]["notes"])
+
+
+def fields(trial, **other):
+    return {**logged(trial), **other}
+
+
+NAN = np.full(20, np.nan)
+PADDED = {name: np.concatenate([values, NAN]) for name, values in HELD.items()}
+REPEATED = {**HELD, "t": np.concatenate([HELD["t"][:1], HELD["t"][:-1]])}
+NAVIGATION = ("t", "north", "east", "heading")
+APART = [
+    {"nav": {name: of[name] for name in NAVIGATION}, "engine": {name: of[name] for name in ("t", "rpm", "rudder")}}
+    for of in (HELD, {name: values[: len(RUN.t)] for name, values in SECOND.items()})
+]
+
+
+@pytest.mark.parametrize(
+    ("held", "runs"),
+    [
+        ({"a": PADDED, "b": HELD}, ["a", "b"]),
+        ({"a": REPEATED, "b": SECOND}, ["a", "b"]),
+        ({"a": fields(RUN, wind=RUN.t), "b": SECOND}, ["a", "b"]),
+        ({"a": {"data": MATRIX, "colheaders": texts(NAMES)}, "b": {"data": 1.1 * MATRIX, "colheaders": texts(NAMES)}},
+         ["a", "b"]),
+        ({"a": {"out": {"time": RUN.t, "signals": SIGNALS}}, "b": {"out": {"time": RUN.t, "signals": SIGNALS}}},
+         ["a.out", "b.out"]),
+        ({"day1": {"turn": HELD, "zigzag": SECOND}, "day2": {"turn": HELD}}, ["day1.turn", "day1.zigzag", "day2.turn"]),
+        ({"run1": APART[0], "run2": APART[1]}, ["run1", "run2"]),
+        ({"run": array_of(HELD, SECOND), "more": HELD}, ["run(1)", "run(2)", "more"]),
+        ({"run": array_of(HELD, dict.fromkeys(HELD, np.zeros((0, 0))), SECOND)}, ["run(1)", "run(3)"]),
+        ({"a": MATRIX.T, "b": 1.1 * MATRIX.T}, ["a", "b"]),
+        ({"position": MATRIX[:, 1:5], "velocity": MATRIX[:, 2:6], "t": RUN.t}, []),
+        ({"port": {"rpm": RUN.n, "angle": RUN.delta, "torque": RUN.n, "thrust": RUN.n}, **HELD}, []),
+    ],
+)  # fmt: skip
+def test_what_is_a_run(tmp_path, held, runs):
+    found = runs_in(variables(saved(tmp_path / "log.mat", held)))
+    assert found == (runs if len(runs) > 1 else [])
+
+
+def test_columns_of_two_runs_are_never_one_trial(tmp_path):
+    """Runs as long as each other, with navigation and engine in a structure each: mixed, they were sure."""
+    log = saved(tmp_path / "log.mat", {"run1": APART[0], "run2": APART[1]})
+    trials = import_logs([log], propose_map(log).map(), ".", dry_run=True).trials
+    assert [trial.id for trial in trials] == ["log_run1", "log_run2"]
+    for trial, of in zip(trials, (HELD, SECOND), strict=True):
+        np.testing.assert_allclose(60.0 * trial.n, of["rpm"][: trial.n_samples], rtol=1e-6)
+        np.testing.assert_allclose(trial.x, of["north"][: trial.n_samples], rtol=1e-6, atol=1e-6)
+
+
+def test_a_name_that_is_taken_takes_no_column_away(tmp_path):
+    held = {"data": MATRIX, "colheaders": texts(NAMES), "rpm": RUN.t}
+    found = columns_of(saved(tmp_path / "log.mat", held))
+    assert [*NAMES, "rpm.rpm"] == found.names
+
+
+def test_what_describes_a_run_is_no_run(tmp_path):
+    log = saved(tmp_path / "log.mat", HELD | {"info": {"ship": "suzaku", "draught": 3.0}})
+    assert not propose_map(log).problems
+
+
+def test_files_whose_runs_are_called_otherwise(tmp_path):
+    logs = [
+        saved(tmp_path / "a.mat", {"run": array_of(HELD, SECOND)}),
+        saved(tmp_path / "b.mat", {"first": SECOND, "second": HELD}),
+    ]
+    proposal = propose_map(logs)
+    assert 'variable = "*"' in proposal.text
+    assert proposal.notes[0] == "the logs differ in their variables: each that holds a log becomes a trial"
+    found = import_logs(logs, proposal.map(), ".", dry_run=True)
+    assert [trial.id for trial in found.trials] == ["a_run_1", "a_run_2", "b_first", "b_second"]
+
+
+def test_a_run_that_lacks_a_column_is_named(tmp_path):
+    lacking = {**SECOND, "rpm": np.zeros(3)}
+    told = refusal(lambda: propose_map(saved(tmp_path / "log.mat", {"run": array_of(HELD, HELD, lacking)})))
+    assert "'run(3)' 5, without 'rpm'" in told
 
 
 def test_a_run_that_there_is_not(tmp_path):

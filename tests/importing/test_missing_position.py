@@ -36,6 +36,26 @@ def test_what_follows_the_turn_is_not_the_missing_half_of_the_position(tmp_path,
     assert "'East [m]' is called the position to the east" in told[0]
 
 
+@pytest.mark.parametrize("name", ["Distance [m]", "Dist", "Afstand"])
+@pytest.mark.parametrize("run", ["turn_p35", "zigzag_20"])
+def test_the_distance_sailed_is_no_half_of_a_position(tmp_path, name, run):
+    trial = suzaku(run)
+    sailed = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(trial.x), np.diff(trial.y)))])
+    columns = pd.DataFrame(half(trial, place="North [m]")).assign(**{"North [m]": trial.x, name: sailed})
+    proposal = propose_map(write_csv(tmp_path / "log.csv", columns))
+    assert proposal.guesses["y"].column is None
+    assert "columns.y.column" in proposal.asks
+
+
+@pytest.mark.parametrize("run", ["turn_p35", "zigzag_20"])
+def test_a_column_without_a_name_that_only_grows_is_not_sure_to_be_a_position(tmp_path, run):
+    trial = suzaku(run)
+    sailed = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(trial.x), np.diff(trial.y)))])
+    columns = pd.DataFrame(half(trial, place="North [m]")).assign(**{"North [m]": trial.x, "Value": sailed})
+    guess = propose_map(write_csv(tmp_path / "log.csv", columns)).guesses["y"]
+    assert guess.column is None or (guess.confidence == "likely" and "it only grows" in guess.evidence[-1])
+
+
 def test_a_position_of_unnamed_columns_is_as_fast_north_as_east(tmp_path):
     """One half in another unit, or a half of something else, makes no track; the two halves of one do."""
     trial = suzaku()

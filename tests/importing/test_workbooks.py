@@ -86,6 +86,45 @@ def test_the_sheet_of_the_log_is_found_and_the_others_are_told(tmp_path):
     assert 'sheet = "more" in [log] of a map reads another one' in propose_map(other).notes[0]
 
 
+def test_sheets_that_differ_a_little_are_runs_too(tmp_path):
+    """Columns in another order, and one more; a calibration with more rows than the log is none."""
+    swapped = [[row[0], row[2], row[1], *row[3:]] for row in rows(ZIGZAG)]
+    more = [[*row, "Wind" if k == 0 else 3.0] for k, row in enumerate(rows(TURN))]
+    volts = [["Volt", "deg"], *([0.01 * k, 0.1 * k] for k in range(2500))]
+    log = book(tmp_path / "book.xlsx", calibration=volts, turn=rows(TURN), other=swapped, more=more)
+    proposal = propose_map(log)
+    assert 'sheet = ["turn", "other", "more"]' in proposal.text
+    first, second, third = imported(log, proposal).trials
+    close(second, imported(book(tmp_path / "plain.xlsx", log=rows(ZIGZAG))).trials[0])
+    np.testing.assert_array_equal(first.x, third.x)
+
+
+def test_workbooks_whose_sheets_are_called_otherwise(tmp_path):
+    logs = [
+        book(tmp_path / "monday.xlsx", turn=rows(TURN), zigzag=rows(ZIGZAG)),
+        book(tmp_path / "tuesday.xlsx", notes=SUMMARY, again=rows(TURN)),
+    ]
+    proposal = propose_map(logs)
+    assert 'sheet = "*"' in proposal.text
+    found = import_logs(logs, proposal.map(), ".", dry_run=True)
+    assert [trial.id for trial in found.trials] == ["monday_turn", "monday_zigzag", "tuesday_again"]
+
+
+def test_names_of_sheets_that_files_cannot_have(tmp_path):
+    log = book(tmp_path / "book.xlsx", **{"run 1": rows(TURN), "run_1": rows(ZIGZAG), "Run 1.": rows(TURN)})
+    ids = [trial.id for trial in imported(log).trials]
+    assert ids == ["book_run_1", "book_run_1_2", "book_Run_1_3"]
+
+
+def test_a_sheet_that_is_wrong_is_named(tmp_path):
+    empty = [[*row[:4], None, row[5]] if k else row for k, row in enumerate(rows(ZIGZAG))]
+    log = book(tmp_path / "book.xlsx", good=rows(TURN), bad=empty)
+    text = propose_map(book(tmp_path / "other.xlsx", good=rows(TURN), bad=rows(ZIGZAG))).text
+    told = refusal(lambda: import_logs([log], parse_map(text), ".", dry_run=True))
+    assert "in 'bad'" in told or "sheet 'bad'" in told
+    assert "'good'" not in told
+
+
 @pytest.mark.parametrize(
     "units",
     [UNITS, ("seconds from start", "metres", "metres", "degrees true", "per minute", "port positive")],

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from ...errors import LogError, Problem
+from ...phrases import listed
 from .sampling import Sample
 
 LEAST = 0.5
@@ -34,7 +35,9 @@ def of_different_kinds(samples: Sequence[Sample]) -> Problem:
     """What is wrong with logs whose columns differ in what a map needs."""
     first = samples[0]
     other = next(one for one in samples if one.names != first.names)
-    why = f"{first.path} has {len(first.names)} columns, {other.path} {len(other.names)}"
+    why = f"{first.label} has {len(first.names)} columns, {other.label} {len(other.names)}"
+    if quoted := [f"'{name[:60]}'" for name in first.names if name.strip() and name not in other.names]:
+        why += f", without {listed(quoted, 4)}"
     if len(other.names) == len(first.names):
         k = next(k for k, name in enumerate(other.names) if name != first.names[k])
         why = f"column {k + 1} is '{first.names[k][:60]}' in one, '{other.names[k][:60]}' in the other"

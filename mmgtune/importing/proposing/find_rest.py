@@ -26,7 +26,7 @@ def by_name(find: Finder) -> None:
     for k, name in enumerate(find.said):
         if k in find.used or k not in find.numeric or not name or name in find.guesses or quantity_of(name) is None:
             continue
-        if _makes_no_sense(find, name):
+        if _makes_no_sense(find, name, k):
             continue
         quantity = known_quantity(name)
         own: dict[str, Any] = {}
@@ -68,7 +68,7 @@ def whole_degrees(find: Finder) -> None:
         find.guesses[name] = replace(guess, confidence=ASKED)
 
 
-def _makes_no_sense(find: Finder, name: str) -> bool:
+def _makes_no_sense(find: Finder, name: str, k: int) -> bool:
     """Whether a quantity that a name speaks of contradicts what was found, or is of no use alone."""
     have = set(find.guesses)
     named = {find.said[k] for k in find.numeric if k not in find.used} | have
@@ -78,13 +78,13 @@ def _makes_no_sense(find: Finder, name: str) -> bool:
         return "x" in have or not {"latitude", "longitude"} <= named
     if name in ("u", "v", "sog", "cog") and find.looks:
         find.notes.append(
-            f"a column is called {meaning(name).split(',')[0]}, and contradicts the positions: it is left out"
+            f"{find.shown(k)} is called {meaning(name).split(',')[0]}, and contradicts the positions: it is left out"
         )
         return True
     if name in ("sog", "cog"):
         return not {"sog", "cog"} <= named or "u" in named
     if name == "r" and find.looks:
-        find.notes.append("a column is called yaw rate, and contradicts the heading: it is left out")
+        find.notes.append(f"{find.shown(k)} is called yaw rate, and contradicts the heading: it is left out")
         return True
     return (name == "delta" and "delta_port" in have) or (name == "n" and "n_port" in have)
 

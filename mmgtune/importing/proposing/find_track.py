@@ -175,8 +175,21 @@ def _add_columns(find: Finder, track: Track, confidence: str, words: Mapping[Tra
             said.append(f"{listed([find.shown(k) for k in find.parts[column].values()])} with it")
         elif column in find.first.written and not both:
             said.append("its cells are in degrees and minutes")
-        doubtful = quantity == "psi" and (find.said[column] == "cog" or _called_heading(find, track))
+        doubtful = bool(quantity == "psi" and (find.said[column] == "cog" or _called_heading(find, track)))
+        if quantity != "psi" and find.said[partner] and not find.said[column] and _only_grows(find, column):
+            doubtful = True
+            said.append("it only grows, as a distance sailed would")
         find.add(Guess(quantity, column, own, tuple(said), LIKELY if doubtful else confidence))
+
+
+def _only_grows(find: Finder, k: int) -> bool:
+    """Whether a column never falls by more than its noise in any log."""
+    for values in (one.numbers[k] for one in find.samples):
+        known = values[np.isfinite(values)]
+        back = float(np.max(np.maximum.accumulate(known) - known, initial=0.0))
+        if not len(known) or back > 0.01 * float(np.ptp(known)):
+            return False
+    return True
 
 
 def _called_heading(find: Finder, track: Track) -> list[str]:

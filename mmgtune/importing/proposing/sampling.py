@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import re
 import warnings
@@ -29,7 +30,7 @@ from ..table import MISSING
 from ..text import PEEK, Lines, fields_of, start_of
 from ..thousands import CLOSED, in_thousands
 from ..with_units import is_with_unit, numbers_with_unit
-from .words import known_unit, quantity_named
+from .words import DATE, TIME, known_unit, quantity_named
 
 ROWS = 60_000
 """Rows of a log that are looked at."""
@@ -64,6 +65,7 @@ class Sample:
     numbers  (n_rows,) of every column, NaN where a cell is no number
     written  columns whose cells are positions in degrees and minutes
     sided    columns whose cells say the side, such as 35.0S; starboard is positive
+    part     sheet or variable that is looked at, of several
     second   columns that are the second half of another one, whose cells hold a latitude and a longitude each
     """
 
@@ -77,6 +79,12 @@ class Sample:
     sided: frozenset[int] = frozenset()
     second: Mapping[int, int] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    part: str = ""
+
+    @property
+    def label(self) -> str:
+        """Where it is from, for messages."""
+        return f"{self.path}, '{self.part}'" if self.part else str(self.path)
 
     def turned_round(self) -> Sample:
         """The same with the rows in the other order."""
@@ -335,7 +343,7 @@ def _of_workbook(path: Path) -> list[Sample]:
     logs = logs_among(outlines) or [one.name for one in outlines][-1:]
     heads = {one.name: _head(one.rows[:HEADING]) for one in outlines if one.name in logs}
     # Sheets that are written alike are runs; of others the first is the log.
-    alike = [one for one in logs if heads[one] == heads[logs[0]]]
+    alike = [one for one in logs if _alike(heads[logs[0]], heads[one])]
     layout: dict[str, Any] = {"format": "xlsx"}
     notes = passed_over(outlines, logs[0]) if len(alike) == 1 else []
     if len(alike) > 1:
@@ -345,7 +353,18 @@ def _of_workbook(path: Path) -> list[Sample]:
         notes += [f"not read: sheet {listed(others, 6)}"] if others else []
     elif len(outlines) > 1:
         layout["sheet"] = logs[0]
-    return [replace(_of_sheet(path, one, layout), notes=notes) for one in alike[:RUNS]]
+    several = len(alike) > 1
+    return [replace(_of_sheet(path, one, layout), notes=notes, part=one if several else "") for one in alike[:RUNS]]
+
+
+def _alike(one: tuple[list[str], int | None], other: tuple[list[str], int | None]) -> bool:
+    """Whether sheets with these names of columns, in these rows, can be read by one map."""
+    names = [{name.strip() for name in of[0] if name.strip()} for of in (one, other)]
+    if not names[0]:
+        return one == other
+    if any(quantity_named(name) in (DATE, TIME) for name in names[0] ^ names[1]):
+        return False
+    return one[1] == other[1] and len(names[0] & names[1]) >= max(min(4, len(names[0])), 0.75 * max(map(len, names)))
 
 
 def _head(rows: Sequence[Sequence[Any]]) -> tuple[list[str], int | None]:
@@ -384,19 +403,20 @@ def _of_matlab(path: Path) -> list[Sample]:
     runs = runs_in(held)
     if len(runs) > 1:
         layout: dict[str, Any] = {"format": "mat", "variable": runs}
-        of_runs = [columns_of(path, one) for one in runs[:RUNS]]
+        of_runs = {one: columns_of(path, one) for one in runs[:RUNS]}
         notes = [f"the file holds {len(runs)} runs: each becomes a trial"]
-        return [_of_columns(path, layout, replace(one, notes=[*notes, *one.notes])) for one in of_runs]
+        return [
+            replace(_of_columns(path, layout, found), notes=[*notes, *found.notes], part=one)
+            for one, found in of_runs.items()
+        ]
     found, layout = columns_of(path), {"format": "mat"}
     # One structure among other things is named, so that a vector beside it cannot come in its way.
     inside = [name for name, value in held.items() if isinstance(value, dict)]
     if len(inside) == 1 and len(held) > 1:
-        try:
+        with contextlib.suppress(LogError):  # what describes the run holds no columns
             within = columns_of(path, inside[0])
-        except LogError:
-            within = found
-        if len(within.names) >= 4:
-            found, layout["variable"] = within, inside[0]
+            if len(within.names) >= 4:
+                found, layout["variable"] = within, inside[0]
     return [_of_columns(path, layout, found)]
 
 

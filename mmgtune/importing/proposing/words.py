@@ -33,6 +33,9 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"draught", r"trim\b", r"heave", r"schub", r"drehmoment", r"leistung", r"poussee", r"couple", r"puissance",
         r"empuje", r"推力", r"トルク", r"turbo", r"generator", r"alternat", r"\bpump", r"\bdg ?\d", r"\bfan\b",
     )),
+    (OTHER, (
+        r"\bdist\b", r"distan[cz]", r"afstand", r"odomet", r"\bweg\b", r"\btrip\b", r"mileage", r"sailed", r"航程",
+    )),
     (ROLL, (
         r"roll", r"heel", r"kranken", r"krangung", r"rollen", r"gite", r"roulis", r"escora", r"balanceo", r"slinger",
         r"pitch", r"stampf", r"tangage", r"横揺", r"横摇", r"縦揺",
