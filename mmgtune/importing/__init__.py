@@ -4,7 +4,7 @@ mapping         the map of a log; reading_map: from TOML; checking_map: its cont
 headers         names and units in logs
 forms           what kind of file a log is
 table           columns of a log; rows: those a map names
-text            logs read as tables; parquet_log, workbook, matlab; cells: of what is in memory
+text            logs read as tables; parquet_log, workbook, matlab and matlab_columns; cells: of what is in memory
 clock           time put right; stopwatch, dates, degrees, numerals, thousands, sides: as people write them
 seldom          columns that most rows of a merged log have no value of
 periods         what begins anew at midnight
