@@ -134,14 +134,19 @@ def import_logs(
     log_map = log_map if isinstance(log_map, LogMap) else load_map(log_map)
     refuse_file(out)
     hold_flag(overwrite)
+    problems: list[Problem] = []
+    runs: list[tuple[Path, LogMap]] = []
+    for log in paths:
+        try:
+            runs += [(log, own) for own in _each(log_map, log)]
+        except LogError as error:
+            problems += error.problems
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
-        names = [_name(one, log) for log in paths for one in _each(log_map, log)]
-        refuse_existing([out / REPORT, *(out / f"{name}.parquet" for name in names)])
+        refuse_existing([out / REPORT, *(out / f"{_name(own, log)}.parquet" for log, own in runs)])
     trials: list[Trial] = []
     quality: list[dict[str, Any]] = []
-    problems: list[Problem] = []
-    for log, own in [(path, own) for path in paths for own in _each(log_map, path)]:
+    for log, own in runs:
         try:
             # Damaged numbers overflow on their way to where they are found out.
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -214,12 +219,8 @@ def _of_part(problem: Problem, part: str) -> Problem:
 
 def _name(log_map: LogMap, log: Path) -> str:
     """The name of the trial that a log becomes."""
-    return (
-        re.sub(r"[^\w.-]+", "_", _written(log_map.id, log, re.sub(r"[^\w-]+", "_", log_map.part).strip("_"))).strip(
-            "._"
-        )
-        or "trial"
-    )
+    part = re.sub(r"[^\w-]+", "_", log_map.part).strip("_")
+    return re.sub(r"[^\w.-]+", "_", _written(log_map.id, log, part)).strip("._") or "trial"
 
 
 def _written(template: str, log: Path, part: str) -> str:

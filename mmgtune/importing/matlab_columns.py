@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem, among
-from ..limits import LOG_COLUMNS
+from ..limits import LOG_COLUMNS, LOG_RUNS
 from ..phrases import listed
 from .cells import table_of
 from .mapping import LogMap
@@ -109,9 +109,13 @@ def columns_of(path: Path, variable: str = "") -> Columns:
 
 
 def runs_in(held: Mapping[str, Value]) -> list[str]:
-    """Names of structures, or of matrices, that hold a run each; empty where there are no two."""
+    """Names of structures, or of matrices, that hold a run each; empty where there are no two.
+
+    Raises LogError where there are more than any log has.
+    """
     structures = _structures(held)
     fields = {path: frozenset(value) for path, value in structures.items() if _is_run(value)}
+    LOG_RUNS.hold(len(fields), "a MATLAB file", LogError)
     # Runs have most of their fields in common, as both sides of one ship have, which lack the time.
     groups = [[other for other in fields if _in_common(fields[one], fields[other])] for one in fields]
     found = max(groups, key=len, default=[])

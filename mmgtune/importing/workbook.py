@@ -34,6 +34,7 @@ LOOKED_AT = 2000
 """Rows of a sheet that are looked at to tell which holds a log."""
 COLUMNS = 4
 """Numbers in a row from which it may be one of a log: time, and a position and heading at least."""
+_COUNTED = (float, int, datetime.datetime, datetime.time, datetime.timedelta)
 SMALL = 0.2
 """Share of the numbers of the largest sheet, of the rows looked at, from which another one is a log too."""
 
@@ -248,7 +249,7 @@ def _numbers_in(rows: Sequence[Sequence[Any]], least: int) -> int:
     total = 0
     for row in rows:
         cells = [cell for cell in row if cell is not None]
-        numbers = sum(isinstance(cell, float | int) or _numeric(cell) or _has_unit(cell) for cell in cells)
+        numbers = sum(isinstance(cell, _COUNTED) or _numeric(cell) or _has_unit(cell) for cell in cells)
         total += numbers if numbers >= least and 2 * numbers >= len(cells) else 0
     return total
 

@@ -245,3 +245,20 @@ def test_files_that_are_not_read_say_what_they_are(tmp_path):
     noise = tmp_path / "noise.mat"
     noise.write_bytes(bytes(range(256)) * 8)
     assert "no MATLAB file of version 5 to 7" in refusal(lambda: propose_map(noise))
+
+
+def test_all_runs_of_files_of_which_one_is_damaged(tmp_path):
+    """Each is told what is wrong with it, and nothing is written."""
+    logs = [saved(tmp_path / f"{name}.mat", {"a": HELD, f"b{name}": SECOND}) for name in ("one", "two")]
+    log_map = propose_map(logs).map()
+    logs[0].write_bytes(logs[0].read_bytes()[:5000])
+    told = refusal(lambda: import_logs(logs, log_map, tmp_path / "out"))
+    assert "the MATLAB file cannot be read" in told
+    assert "two.mat" not in told
+    assert not (tmp_path / "out").exists()
+
+
+def test_more_runs_than_any_log_has(tmp_path):
+    short = {name: values[:4] for name, values in HELD.items()}
+    held = {f"s{k}": array_of(*[short] * 400) for k in range(3)}
+    assert "1200 runs" in refusal(lambda: propose_map(saved(tmp_path / "log.mat", held)))
