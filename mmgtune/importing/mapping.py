@@ -14,6 +14,8 @@ ASKS = "?"
 FORMATS = ("csv", "parquet", "nmea", "xlsx", "mat")
 ALL = "*"
 """How a map says that every sheet or run of a log becomes a trial."""
+PLACEHOLDERS = ("stem", "parent", "part")
+"""What may stand in braces in ``id`` and ``group``: the log's name, its folder, and the sheet or variable."""
 PARTS = ("sheet", "variable")
 """Keys of [log] that name one of several runs in a log, or several."""
 TIME_FORMATS = ("number", "iso", "clock", "hhmmss", "mm:ss", "date", "dmy", "mdy", "ymd")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from ..toml_reading import MAP, TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
 from .degrees import DDMM
-from .mapping import ASKS, FORMATS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogMap, Source, TimeSource
+from .mapping import ASKS, FORMATS, PLACEHOLDERS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogMap, Source, TimeSource
 from .position_parts import HEMISPHERES, PARTS
 from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
 from .time_parts import PARTS as TIME_PARTS
@@ -196,7 +197,7 @@ class _Reader(TomlReader):
             ship=self.text_of("trial", trial, "ship"),
             id=self.id(trial),
             manoeuvre=self.text_of("trial", trial, "manoeuvre"),
-            group=self.text_of("trial", trial, "group"),
+            group=self.template(trial, "group"),
             source=self.choice("trial", trial, "source", SOURCES) or "measured",
             note=self.text_of("trial", trial, "note"),
             noise=self.noise(trial),
@@ -217,9 +218,17 @@ class _Reader(TomlReader):
             return {}
         return table
 
+    def template(self, trial: dict[str, Any], key: str) -> str:
+        """A text in which names in braces stand for something of the log."""
+        text = self.text_of("trial", trial, key)
+        for name in re.findall(r"\{(\w*)\}", text):
+            if name not in PLACEHOLDERS:
+                self.problem(f"'trial.{key}' has '{{{name}}}' in it", "trial", key, **among(name, PLACEHOLDERS))
+        return text
+
     def id(self, trial: dict[str, Any]) -> str:
         """Names of trials, before what stands for the log's name is put in."""
-        template = self.text_of("trial", trial, "id") or "{stem}"
+        template = self.template(trial, "id") or "{stem}"
         problem = limits.NAME.problem(len(template), "")
         if problem is not None:
             self.problem(problem.what, "trial", "id", problem.why, problem.fix)

@@ -6,6 +6,13 @@ from mmgtune.importing import load_map, parse_map
 from tests.importing.made import MAP, refusal
 
 
+def test_a_placeholder_that_there_is_not():
+    told = refusal(lambda: parse_map(MAP.replace("[time]", '[trial]\nid = "{prt}"\ngroup = "{folder}"\n[time]')))
+    assert "'trial.id' has '{prt}' in it" in told
+    assert "'part'" in told
+    assert "'trial.group' has '{folder}' in it" in told
+
+
 def test_everything_wrong_at_once():
     text = MAP.replace('x = { column = "north", unit = "m" }', 'x = { colum = "north", unit = "furlong" }')
     text = text.replace("psi = ", "phi = ").replace("[velocity]", "[velocities]") + '[cut]\nlead = "5 s"\n'

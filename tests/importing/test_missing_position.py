@@ -56,6 +56,15 @@ def test_a_column_without_a_name_that_only_grows_is_not_sure_to_be_a_position(tm
     assert guess.column is None or (guess.confidence == "likely" and "it only grows" in guess.evidence[-1])
 
 
+def test_one_half_of_a_latitude_and_longitude_asks_for_the_other(tmp_path):
+    columns = half(suzaku(), place="Latitude [deg]")
+    columns["Latitude [deg]"] = 52.0 + columns["Latitude [deg]"] / 111.3e3
+    proposal = propose_map(write_csv(tmp_path / "log.csv", columns))
+    assert proposal.guesses["latitude"].column == 1
+    assert "columns.longitude.column" in proposal.asks
+    assert "x" not in proposal.guesses
+
+
 def test_a_position_of_unnamed_columns_is_as_fast_north_as_east(tmp_path):
     """One half in another unit, or a half of something else, makes no track; the two halves of one do."""
     trial = suzaku()

@@ -75,7 +75,7 @@ def _makes_no_sense(find: Finder, name: str, k: int) -> bool:
     if name in ("x", "y"):
         return bool({"latitude", "longitude"} & named)
     if name in ("latitude", "longitude"):
-        return "x" in have or not {"latitude", "longitude"} <= named
+        return "x" in have
     if name in ("u", "v", "sog", "cog") and find.looks:
         find.notes.append(
             f"{find.shown(k)} is called {meaning(name).split(',')[0]}, and contradicts the positions: it is left out"
@@ -123,9 +123,9 @@ def few_digits(find: Finder) -> None:
 def missing(find: Finder) -> None:
     """Questions for what a trial needs and no column was found to be."""
     have = set(find.guesses)
-    if not {"x", "y"} <= have and not {"latitude", "longitude"} <= have:
-        for name in ("x", "y"):
-            find.guesses.setdefault(name, _asked(name))
+    # One half of a position asks for the other one.
+    for name in ("latitude", "longitude") if {"latitude", "longitude"} & have else ("x", "y"):
+        find.guesses.setdefault(name, _asked(name))
     for name, pair in (("psi", ()), ("n", ("n_port", "n_stbd")), ("delta", ("delta_port", "delta_stbd"))):
         if name not in have and not (pair and set(pair) <= have):
             find.guesses[name] = _asked(name)
