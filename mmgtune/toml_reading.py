@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 import re
 import tomllib
+from collections.abc import Mapping
 from typing import Any
 
 from . import units
 from .errors import MmgtuneError, Problem, among, brief
 from .limits import NESTING
 
-MAP = "the map"
-"""What a map of a log is called in messages."""
 
-
-def toml_of(text: str, what: str, where: str, error: type[MmgtuneError], *, profile: bool = False) -> dict[str, Any]:
+def toml_of(
+    text: str, what: str, where: str, error: type[MmgtuneError], *, profile: bool = False, log_map: bool = False
+) -> dict[str, Any]:
     """The tables written in ``text``; a byte-order mark in front is passed over.
 
-    profile  whether a ship profile is wanted
-    Raises ``error`` where ``what``, such as ``MAP``, is not TOML, or is a ship profile or a map where none is wanted.
+    profile, log_map  whether it may be a ship profile, or the map of a log
+    Raises ``error`` where ``what``, such as "the split", is not TOML, or is one of these where it may not be.
     """
     try:
         found = tomllib.loads(text.removeprefix("\ufeff"))
@@ -34,12 +34,17 @@ def toml_of(text: str, what: str, where: str, error: type[MmgtuneError], *, prof
         there = f"it has [ship] and [hull], and {what} is wanted here"
         fix = f"give {what}, and the profile where a ship is wanted"
         raise error(Problem("this is a ship profile", where, there, fix))
-    if what != MAP and {"time", "columns"} <= found.keys() and not {"ship", "hull"} & found.keys():
-        there = f"it has [time] and [columns], and {what} is wanted here"
+    if not log_map and is_map(found) and not {"ship", "hull"} & found.keys():
+        there = f"it says what the columns of a log are, and {what} is wanted here"
         raise error(
             Problem("this is the map of a log", where, there, f"give {what}, and the map where logs are imported")
         )
     return found
+
+
+def is_map(data: Mapping[str, Any]) -> bool:
+    """Whether parsed TOML is a map that makes trials of logs."""
+    return "columns" in data or "log" in data
 
 
 def _in_words(error: tomllib.TOMLDecodeError) -> str:

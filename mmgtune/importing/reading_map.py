@@ -14,7 +14,7 @@ from .. import limits, units
 from ..errors import LogError, Problem, among, brief, closest, reason
 from ..phrases import counted
 from ..resources import import_map_names, import_maps, must_be_name
-from ..toml_reading import MAP, TomlReader, finite, named, toml_of
+from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
 from .degrees import DDMM
@@ -55,7 +55,7 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
 
 def parse_map(text: str, path: Path = Path("map")) -> LogMap:
     """The map written in ``text``; ``path`` is for messages.  Raises LogError with everything wrong in it."""
-    data = toml_of(text, MAP, str(path), LogError)
+    data = toml_of(text, "the map", str(path), LogError, log_map=True)
     asked = questions(data, text, path)
     if asked:
         raise LogError(*asked)

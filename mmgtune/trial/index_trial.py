@@ -17,7 +17,7 @@ from .. import limits, units
 from ..errors import Problem, TrialError, among, brief, closest, reason
 from ..files import can_name_file
 from ..limits import NAME
-from ..toml_reading import TomlReader, finite, toml_of
+from ..toml_reading import TomlReader, finite, is_map, toml_of
 from ..units import DEG
 from .raw_logs import map_instead
 from .schema import SOURCES
@@ -195,11 +195,6 @@ def has_index_trials(path: Path) -> bool:
     return "trial" in data and not is_map(data)
 
 
-def is_map(data: Mapping[str, Any]) -> bool:
-    """Whether parsed TOML is a map that makes trials of logs."""
-    return "columns" in data or "log" in data
-
-
 def read_index_trials(path: Path) -> tuple[list[IndexTrial], list[Problem]]:
     """The trials of a file, and everything wrong with it."""
     try:
@@ -227,7 +222,7 @@ def _data(path: Path, profile: bool = False) -> tuple[dict[str, Any], str]:
     except (OSError, ValueError) as error:
         what = "the file of stated indices cannot be read"
         raise TrialError(Problem(what, str(path), reason(error), "it must be UTF-8 text")) from error
-    return toml_of(text, "the file of stated indices", str(path), TrialError, profile=profile), text
+    return toml_of(text, "the file of stated indices", str(path), TrialError, profile=profile, log_map=True), text
 
 
 class _Table:

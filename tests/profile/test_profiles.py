@@ -206,7 +206,7 @@ def test_a_profile_in_the_place_of_another_file_is_told_as_one(tmp_path, read, w
     assert problem.fix.startswith(f"give {wanted}")
 
 
-@pytest.mark.parametrize("read", [load_profile, load_trials, read_table, read_particulars])
+@pytest.mark.parametrize("read", [load_profile, read_table, read_particulars])
 def test_a_map_of_a_log_in_the_place_of_another_file_is_told_as_one(tmp_path, read):
     (tmp_path / "map.toml").write_text('schema = 1\n[time]\ncolumn = "t"\n[columns]\nx = { column = "x" }\n')
     with pytest.raises(MmgtuneError, match="this is the map of a log"):

@@ -26,7 +26,7 @@ def proposes(folder: Path, log: str) -> str:
         return "refused"
     json.dumps(made.to_dict(), allow_nan=False)
     "\n".join(made.lines()).encode("utf-8", "surrogatepass")
-    toml_of(made.text, "the map", "map", LogError)
+    toml_of(made.text, "the map", "map", LogError, log_map=True)
     if not made.asks:
         parse_map(made.text)
     return f"{len(made.asks)} asked"
