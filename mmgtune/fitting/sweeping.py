@@ -150,7 +150,7 @@ class SweepResult(Plotted):
                 "found": False,
                 "sentence": (
                     f"No clear over-fitting: at a_r = {self.widths[i]:g} J rises to {judged[i]:.4g} on trials not "
-                    f"used, from {judged[best]:.4g}, but their tracks come closer: {self._further_off(i)[:-2]}."
+                    f"used, from {judged[best]:.4g}, but their tracks come closer: {self._further_off(i)}."
                 ),
             }
         if not worse:
@@ -159,11 +159,12 @@ class SweepResult(Plotted):
                 "sentence": "No over-fitting: a wider box nowhere costs accuracy on trials not used.",
             }
         i = max(worse, key=lambda k: judged[k])
+        further = self._further_off(i)
         return {
             "found": True,
             "sentence": (
                 f"Over-fitting from a_r = {self.widths[worse[0]]:g}: at a_r = {self.widths[i]:g} "
-                f"{self._further_off(i)}J falls to {self.runs[i].J:.4g} on the tune trials "
+                f"{f'{further}; ' if further else ''}J falls to {self.runs[i].J:.4g} on the tune trials "
                 f"but rises to {judged[i]:.4g} on trials not used, from {judged[best]:.4g}."
             ),
         }
@@ -179,7 +180,7 @@ class SweepResult(Plotted):
         if not there or list(there) != list(best):
             return ""
         sizes = " and ".join(f"{size} off {of}" for of, size in there.items())
-        return f"trials not used are {sizes}, with a_r = {self.widths[self.best]:g} {' and '.join(best.values())}; "
+        return f"trials not used are {sizes}, with a_r = {self.widths[self.best]:g} {' and '.join(best.values())}"
 
     def to_dict(self) -> dict[str, Any]:
         """The document of ``sweep.json``, schema 1 (docs/formats.md)."""

@@ -10,9 +10,9 @@ from ..errors import LogError, Problem
 from .mapping import LogMap
 from .matlab import of_version_4
 from .text import binary, start_of
-from .workbook import OLD
+from .workbook import OLD, ZIP
 
-_WORDS = {b"PAR1": "a Parquet file", b"PK\x03\x04": "a workbook or another archive", b"MATLAB": "a MATLAB file"}
+_WORDS = {b"PAR1": "a Parquet file", ZIP: "a workbook or another archive", b"MATLAB": "a MATLAB file"}
 
 
 _UNPACK = "unpack it first"
@@ -43,7 +43,7 @@ def form_of(log: Path) -> str:
     content = start_of(log)
     if content.startswith(b"PAR1"):
         return "parquet"
-    if content.startswith(b"PK\x03\x04"):
+    if content.startswith(ZIP):
         _hold_workbook(log)
         return "xlsx"
     if content.startswith(OLD):

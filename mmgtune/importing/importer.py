@@ -192,24 +192,20 @@ def _each(log_map: LogMap, log: Path) -> tuple[LogMap, ...]:
     Raises LogError where all parts are wanted of a log that cannot be read.
     """
     own = log_map.of(log)
-    parts = _all_parts(log, own) if own.part == ALL else own.of_parts()
+    parts = _parts_in(log, own) if own.part == ALL else own.parts
     template = own.id if "{part}" in own.id else f"{own.id}_{{part}}"
     found: dict[str, LogMap] = {}
-    for one in parts:
-        named = replace(one, id=template)
-        name = _name(named, log)
-        if name.lower() in map(str.lower, found):  # run 1 and run_1, as files are called
-            named = replace(one, id=f"{template}_{len(found) + 1}")
+    for part in parts:
+        named = replace(own.of_part(part), id=template)
+        if _name(named, log).lower() in map(str.lower, found):  # run 1 and run_1, as files are called
+            named = replace(named, id=f"{template}_{len(found) + 1}")
         found[_name(named, log)] = named
     return tuple(found.values()) or (own,)
 
 
-def _all_parts(log: Path, log_map: LogMap) -> tuple[LogMap, ...]:
-    """A map for each sheet of a workbook that holds a log, or for each run in a MATLAB file."""
-    if log_map.variable:
-        parts = runs_in(variables(log)) or [""]
-        return tuple(replace(log_map, variable=part) for part in parts)
-    return tuple(replace(log_map, sheet=part) for part in logs_among(outlines_of(log)) or [""])
+def _parts_in(log: Path, log_map: LogMap) -> list[str]:
+    """The sheets of a workbook that hold a log, or the runs in a MATLAB file; "" where these are not told apart."""
+    return (runs_in(variables(log)) if log_map.variable else logs_among(outlines_of(log))) or [""]
 
 
 def _of_part(problem: Problem, part: str) -> Problem:

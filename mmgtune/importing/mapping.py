@@ -208,11 +208,9 @@ class LogMap:
         """The map of one log: the first in ``some`` whose pattern its name matches, else this one."""
         return next((one for pattern, one in self.some if fnmatchcase(log.name, pattern)), self)
 
-    def of_parts(self) -> tuple[LogMap, ...]:
-        """A map for each of ``parts``, () where there are none."""
-        if self.variable:
-            return tuple(replace(self, parts=(), variable=part) for part in self.parts)
-        return tuple(replace(self, parts=(), sheet=part) for part in self.parts)
+    def of_part(self, part: str) -> LogMap:
+        """The map of one sheet or variable alone."""
+        return replace(self, parts=(), variable=part) if self.variable else replace(self, parts=(), sheet=part)
 
     @property
     def part(self) -> str:

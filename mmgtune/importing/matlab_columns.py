@@ -62,14 +62,19 @@ def read_matlab(path: Path, log_map: LogMap) -> Table:
 
 
 def columns_of(path: Path, variable: str = "") -> Columns:
-    """The columns in a file: of a structure or matrix, or the variables that are equally long vectors.
+    """The columns in a file, as ``columns_in`` has them.  Raises LogError where it cannot be read too."""
+    return columns_in(variables(path), path, variable)
+
+
+def columns_in(held: Mapping[str, Value], path: Path, variable: str = "") -> Columns:
+    """The columns in what a file holds: of a structure or matrix, or the variables that are equally long vectors.
 
     variable  which structure or matrix, such as "log", "data.run1" or "run(2)"; "" for all there is, or the first of
               several runs
+    path      for messages
 
-    Raises LogError where the file cannot be read, or holds none.
+    Raises LogError where it holds none.
     """
-    held = variables(path)
     notes: list[str] = []
     several: list[str] = [] if variable else runs_in(held)
     if len(several) > 1:

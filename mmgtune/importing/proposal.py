@@ -155,12 +155,10 @@ def _of_all(samples: list[Sample]) -> list[Sample]:
     others = {key for key in PARTS if any(one.layout.get(key) != first.layout.get(key) for one in samples)}
     if not others:
         return samples
-    layout = {key: ALL if key in others else value for key, value in first.layout.items()}
     what = " and ".join(f"{key}s" for key in PARTS if key in others)
     note = f"the logs differ in their {what}: each that holds a log becomes a trial"
-    return [replace(first, layout=layout | dict.fromkeys(others, ALL), notes=[note])] + [
-        replace(one, notes=[]) for one in samples[1:]
-    ]
+    layout = first.layout | dict.fromkeys(others, ALL)
+    return [replace(first, layout=layout, notes=[note]), *(replace(one, notes=[]) for one in samples[1:])]
 
 
 def _made(finder: Finder, paths: tuple[Path, ...], left: tuple[str, ...]) -> Proposal:

@@ -26,6 +26,8 @@ ENTRIES = 2000
 """Parts that a workbook may have."""
 LONGEST = 200
 """Characters of a cell that are looked at."""
+ZIP = b"PK\x03\x04"
+"""How a workbook begins, and any other zip archive."""
 OLD = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 """How a workbook of the older kind begins (.xls), and one with a password."""
 
@@ -205,10 +207,11 @@ def _opened(path: Path, formulas: bool = False) -> Iterator[Any]:
     except (LogError, MemoryError):
         raise
     except zipfile.BadZipFile as error:
-        why = f"it is cut short, or damaged: {reason(error)}"
-        raise LogError(
-            Problem("the workbook cannot be read", str(path), why, "copy it again from its source")
-        ) from error
+        with path.open("rb") as file:
+            begins = file.read(len(ZIP)) == ZIP
+        why = f"it is cut short, or damaged: {reason(error)}" if begins else "it is no .xlsx file"
+        fix = "copy it again from its source" if begins else "use the map made for this log"
+        raise LogError(Problem("the workbook cannot be read", str(path), why, fix)) from error
     except Exception as error:  # the library raises what it comes across where a file is damaged
         why = f"{type(error).__name__}: {reason(error)}"
         fix = "save it again as .xlsx with a spreadsheet program, or save the sheet as CSV"

@@ -155,4 +155,9 @@ def test_what_cannot_be_read_is_told(tmp_path):
     told = refusal(lambda: propose_map(cut))
     assert "it is cut short, or damaged" in told
     assert "BadZipFile" not in told
+    book(tmp_path / "good.xlsx", log=rows(TURN))
+    text = tmp_path / "log.csv"
+    text.write_text("Time,North\n0,1\n1,2\n")
+    told = refusal(lambda: import_logs([text], propose_map(tmp_path / "good.xlsx").map(), ".", dry_run=True))
+    assert "it is no .xlsx file" in told
     assert "there are no rows in it" in refusal(lambda: propose_map(book(tmp_path / "empty.xlsx", log=[])))

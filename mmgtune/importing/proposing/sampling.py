@@ -397,24 +397,24 @@ def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
 
 def _of_matlab(path: Path) -> list[Sample]:
     from ..matlab import variables
-    from ..matlab_columns import columns_of, runs_in
+    from ..matlab_columns import columns_in, runs_in
 
     held = variables(path)
     runs = runs_in(held)
     if len(runs) > 1:
         layout: dict[str, Any] = {"format": "mat", "variable": runs}
-        of_runs = {one: columns_of(path, one) for one in runs[:RUNS]}
+        of_runs = {one: columns_in(held, path, one) for one in runs[:RUNS]}
         notes = [f"the file holds {len(runs)} runs: each becomes a trial"]
         return [
             replace(_of_columns(path, layout, found), notes=[*notes, *found.notes], part=one)
             for one, found in of_runs.items()
         ]
-    found, layout = columns_of(path), {"format": "mat"}
+    found, layout = columns_in(held, path), {"format": "mat"}
     # One structure among other things is named, so that a vector beside it cannot come in its way.
     inside = [name for name, value in held.items() if isinstance(value, dict)]
     if len(inside) == 1 and len(held) > 1:
         with contextlib.suppress(LogError):  # what describes the run holds no columns
-            within = columns_of(path, inside[0])
+            within = columns_in(held, path, inside[0])
             if len(within.names) >= 4:
                 found, layout["variable"] = within, inside[0]
     return [_of_columns(path, layout, found)]
