@@ -96,11 +96,26 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
 
 def hold_results(path: Path, sheet: str, names: list[str], empty: list[str]) -> None:
     """Raise LogError where a column in which there is nothing holds formulas whose results the file does not hold."""
-    if empty and (formula := _formula(path, sheet, names, empty)):
+    for name, formula in formulas_in(path, sheet, names, empty).items():
         why = f"a cell says {formula}, and the file does not hold what comes of it"
         fix = "open it in a spreadsheet program and save it again, or save the values alone"
         place = f"{path}, sheet '{sheet}'"
-        raise LogError(Problem(f"column '{empty[0]}' holds formulas without results", place, why, fix))
+        raise LogError(Problem(f"column '{name}' holds formulas without results", place, why, fix))
+
+
+def formulas_in(path: Path, sheet: str, names: list[str], empty: list[str]) -> dict[str, str]:
+    """Of columns in which there is nothing those that hold formulas, each with the first of them."""
+    found: dict[str, str] = {}
+    if not empty:
+        return found
+    with _opened(path, formulas=True) as book:
+        rows = next(one for one in book.worksheets if one.title == sheet)
+        rows.reset_dimensions()
+        for row in itertools.islice(rows.iter_rows(values_only=True), 200):
+            for name, cell in zip(names, row, strict=False):
+                if name in empty and isinstance(cell, str) and re.match(r"=\S", cell):
+                    found.setdefault(name, f"'{cell[:60]}'")
+    return found
 
 
 def sheet_of(path: Path, wanted: str) -> Sheet:
@@ -233,18 +248,6 @@ def _rows(sheet: Any, path: Path, most: int | None = None) -> list[tuple[Any, ..
     while rows and all(cell is None for cell in rows[-1]):
         rows.pop()
     return rows
-
-
-def _formula(path: Path, sheet: str, names: list[str], empty: list[str]) -> str:
-    """The first formula in columns that have no numbers, "" where there is none."""
-    with _opened(path, formulas=True) as book:
-        found = next(one for one in book.worksheets if one.title == sheet)
-        found.reset_dimensions()
-        for row in itertools.islice(found.iter_rows(values_only=True), 200):
-            for name, cell in zip(names, row, strict=False):
-                if name in empty and isinstance(cell, str) and re.match(r"=\S", cell):
-                    return f"'{cell[:60]}'"
-    return ""
 
 
 def _numbers_in(rows: Sequence[Sequence[Any]], least: int) -> int:

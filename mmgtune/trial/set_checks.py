@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
@@ -17,6 +18,10 @@ NAMED = 3
 """Things told where a result says that trials are odd."""
 APART = 1.3
 """Factor between trials that neither currents nor the weather make, but wrong units do."""
+COPIED = 0.9
+"""Share of the samples of a trial from which it is another one again."""
+FEWEST_COPIED = 20
+"""Samples that differ from each other and stand in another trial too, which no two runs have by chance."""
 
 
 def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict[str, list[Finding]]:
@@ -26,7 +31,8 @@ def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict
     What is wrong in all that have an approach is told of the others too where it shows.
     """
     found = {name: check_trial(trial, L_pp) for name, trial in trials.items()}
-    for name, finding in (*_ways(trials).items(), *_of_a_gear(trials, found, L_pp).items()):
+    of_the_set = (_ways(trials), _of_a_gear(trials, found, L_pp), _copies(trials))
+    for name, finding in (pair for one in of_the_set for pair in one.items()):
         found[name] = sorted([*found[name], finding], key=lambda one: SEVERITIES.index(one.severity))
     return found
 
@@ -93,6 +99,27 @@ def _of_a_gear(
         for name, way in ways.items()
         if way is not None and not ON_APPROACH[0] <= way / L_pp <= ON_APPROACH[1]
     }
+
+
+def _copies(trials: Mapping[str, Trial]) -> dict[str, Finding]:
+    """Trials that are another one again, as a filtered copy is, by measured numbers that are equal to the last digit."""
+    found: dict[str, Finding] = {}
+    for channels, said in ((("x", "y"), "positions"), (("psi", "r", "u", "v_m"), "heading and velocities")):
+        of: dict[tuple[float, ...], str] = {}
+        for name, trial in trials.items():
+            samples = set(zip(*(getattr(trial, one).tolist() for one in channels), strict=True))
+            (other, shared), *_ = Counter(of[one] for one in samples if one in of).most_common(1) or [("", 0)]
+            if shared >= max(FEWEST_COPIED, COPIED * len(samples)) and name not in found:
+                found[name] = Finding(
+                    "warning",
+                    f"its {said} are those of '{other}'",
+                    str(trials[name].path or name),
+                    f"{shared} samples are equal to the last digit: one run is there twice, and counts twice; where "
+                    "only one of the two is held out, that one is not unseen",
+                    "leave one of them out",
+                )
+            of |= dict.fromkeys(samples - of.keys(), name)
+    return found
 
 
 def _ways(trials: Mapping[str, Trial]) -> dict[str, Finding]:

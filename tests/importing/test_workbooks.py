@@ -150,6 +150,10 @@ def test_what_cannot_be_read_is_told(tmp_path):
     names, *body = rows(TURN)
     log = book(tmp_path / "log.xlsx", log=[names, *([f"=ROW()-{k}", *row[1:]] for k, row in enumerate(body))])
     assert "column 'Time' holds formulas without results" in refusal(lambda: propose_map(log))
+    idle = book(tmp_path / "idle.xlsx", log=[[*names, "Calc"], *([*row, "=B2*2"] for row in body)])
+    proposal = propose_map(idle)
+    assert "note: formulas without results are left out: 'Calc'" in proposal.lines()
+    close(imported(idle, proposal).trials[0], imported(book(tmp_path / "plain.xlsx", log=rows(TURN))).trials[0])
     cut = tmp_path / "cut.xlsx"
     cut.write_bytes(log.read_bytes()[:9000])
     told = refusal(lambda: propose_map(cut))

@@ -56,6 +56,25 @@ def test_sets_that_agree_or_cannot_tell() -> None:
     assert warnings_of_set(half) == []
 
 
+def test_one_run_that_is_there_twice() -> None:
+    run, other = made(seed=1), made("turn_p21", angle=21.0 * DEG, seed=2)
+    smooth = np.convolve(run.r, np.ones(5) / 5.0, "same")
+    copies = {
+        "filtered": replace(run, id="filtered", r=smooth, u=run.u + 0.01),
+        "moved": replace(run, id="moved", x=run.x + 100.0),
+        "cut": replace(run, id="cut", **{name: getattr(run, name)[40:] for name in (*"tx", "y", "psi", *"urn")},
+                       v_m=run.v_m[40:], delta=run.delta[40:]),
+    }  # fmt: skip
+    for name, copy in copies.items():
+        (said,) = warnings_of_set({run.id: run, other.id: other, name: copy})
+        assert said.startswith(f"{name}: its ")
+        assert said.endswith(f"are those of '{run.id}'")
+    again = made("again", seed=3)  # the same orders, measured again
+    assert warnings_of_set({run.id: run, again.id: again}) == []
+    still = {name: made(name, angle=0.0, speed=0.0, n=0.0) for name in ("a", "b")}
+    assert not [one for one in warnings_of_set(still) if "are those of" in one]
+
+
 @pytest.mark.parametrize("name", SUZAKU)
 @pytest.mark.parametrize("factor", [10.0, 60.0, 1.944, 0.1])
 @pytest.mark.parametrize("axis", ["x", "y"])

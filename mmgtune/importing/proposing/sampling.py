@@ -354,7 +354,8 @@ def _of_workbook(path: Path) -> list[Sample]:
     elif len(outlines) > 1:
         layout["sheet"] = logs[0]
     several = len(alike) > 1
-    return [replace(_of_sheet(path, one, layout), notes=notes, part=one if several else "") for one in alike[:RUNS]]
+    sheets = {one: _of_sheet(path, one, layout) for one in alike[:RUNS]}
+    return [replace(of, notes=[*notes, *of.notes], part=one if several else "") for one, of in sheets.items()]
 
 
 def _alike(one: tuple[list[str], int | None], other: tuple[list[str], int | None]) -> bool:
@@ -379,7 +380,7 @@ def _head(rows: Sequence[Sequence[Any]]) -> tuple[list[str], int | None]:
 def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
     import pandas as pd
 
-    from ..workbook import as_text, hold_results, sheet_of
+    from ..workbook import as_text, formulas_in, hold_results, sheet_of
 
     sheet = sheet_of(path, name)
     start = [[as_text(cell) or "" for cell in row] for row in sheet.rows[:HEADING]]
@@ -391,8 +392,10 @@ def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
         for k in range(len(names))
     ]
     empty = [one for one, text in zip(names, texts, strict=True) if one and not text.notna().any()]
-    hold_results(path, sheet.name, names, empty)
-    return _made(path, layout, names, below, texts)
+    hold_results(path, sheet.name, names, [one for one in empty if quantity_named(one)])
+    made = _made(path, layout, names, below, texts)
+    idle = [f"'{one}'" for one in formulas_in(path, sheet.name, names, empty)]
+    return replace(made, notes=[f"formulas without results are left out: {listed(idle, 6)}"] if idle else [])
 
 
 def _of_matlab(path: Path) -> list[Sample]:
