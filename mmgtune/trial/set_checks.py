@@ -102,7 +102,7 @@ def _of_a_gear(
 
 
 def _copies(trials: Mapping[str, Trial]) -> dict[str, Finding]:
-    """Trials that are another one again, as a filtered copy is, by measured numbers that are equal to the last digit."""
+    """Trials that are another one again, as a filtered copy is: measured numbers are equal to the last digit."""
     found: dict[str, Finding] = {}
     for channels, said in ((("x", "y"), "positions"), (("psi", "r", "u", "v_m"), "heading and velocities")):
         of: dict[tuple[float, ...], str] = {}
