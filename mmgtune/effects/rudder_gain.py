@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+
 from ..physics.elementary import where
 from ..physics.quantities import Lanes
 from ..units import DEG
@@ -12,6 +14,12 @@ from .visited import Visited
 LEAST = 2.0 * DEG
 """Rudder to either side from which its gain there can be told."""
 
+HARD_OVER = 35.0 * DEG
+"""Rudder angle [rad] at which the change of the gain with the angle is meant."""
+
+CURVED = 15.0 * DEG
+"""Rudder angle [rad] that trials have to go beyond for that change to be told."""
+
 
 class RudderGain(NamedTuple):
     """See the parameters below."""
@@ -19,14 +27,15 @@ class RudderGain(NamedTuple):
     factor: Lanes
     starboard: Lanes
     port: Lanes
+    curve: Lanes
 
 
 def rudder_gain(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RudderGain) -> Lanes:
-    """Blade angle = factor [-] times logged, times another factor on the side it is logged on.
-
-    Constant on each side (assumption: a linkage out of square is more nearly a sine of the angle).
+    """Blade angle = factor [-] times logged, times another factor on the side it is logged on, times
+    1 + curve (logged / 35 deg)^2, as of a linkage out of square, whose angle is nearly a sine; beyond 70 deg as at 70.
     """
-    return end * e.factor * where(end > 0.0, e.starboard, e.port)
+    share = np.minimum(end * end / HARD_OVER**2, 4.0)
+    return end * e.factor * where(end > 0.0, e.starboard, e.port) * (1.0 + e.curve * share)
 
 
 def _factor(words: str) -> Parameter:
@@ -34,11 +43,21 @@ def _factor(words: str) -> Parameter:
 
 
 def unvisited(found: Mapping[str, float], visited: Visited) -> str:
-    """Rudder to both sides, for how they differ."""
+    """Rudder to both sides, for how they differ; small and large angles, for how they do."""
+    if "curve" in found:
+        return visited.lacking_rudder(CURVED)
     low, high = visited.span(visited.rudder)
     if "starboard" not in found or low < -LEAST < LEAST < high:
         return ""
     return f"{LEAST / DEG:.0f}° of rudder to either side"
+
+
+def _sentence(v: Mapping[str, str]) -> str:
+    words = {"factor": "", "starboard": " to starboard", "port": " to port"}
+    said = "The rudder moved by " + " and ".join(
+        f"{v[name]} times the angle its indicator showed{side}" for name, side in words.items() if name in v
+    )
+    return f"{said} amidships, a factor that changed by {v['curve']} of itself to 35 deg" if "curve" in v else said
 
 
 EFFECT = ActuatorEffect(
@@ -53,18 +72,19 @@ EFFECT = ActuatorEffect(
         "factor": _factor(""),
         "starboard": _factor(" to starboard, beside that factor"),
         "port": _factor(" to port, beside that factor"),
+        "curve": Parameter(
+            "change of that factor from amidships to 35 deg, as a share of it",
+            low=-0.3,
+            high=1.0,
+            bounds=lambda _: (-0.24, 0.24),
+            typical=lambda _: 0.05,
+            bounds_source="a quarter; as much the other way at 70 deg it leaves nothing of the angle",
+        ),
     },
-    variants=(("factor",), ("starboard", "port")),
-    besides=("starboard", "port"),
+    variants=(("factor",), ("starboard", "port"), ("factor", "curve")),
+    besides=("starboard", "port", "curve"),
     varies=("factor",),
     subject="gain of the rudder",
     unvisited=unvisited,
-    sentence=lambda v: (
-        "The rudder moved by "
-        + " and ".join(
-            f"{v[name]} times the angle its indicator showed{words}"
-            for name, words in {"factor": "", "starboard": " to starboard", "port": " to port"}.items()
-            if name in v
-        )
-    ),
+    sentence=_sentence,
 )

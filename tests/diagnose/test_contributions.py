@@ -442,6 +442,10 @@ def test_effects_of_changes_and_of_sides_need_them():
     one = replace(both, rudder=np.abs(both.rudder))
     assert gain.unvisited({"starboard": 1.1, "port": 0.9}, one) == "2° of rudder to either side"
     assert not gain.unvisited({"factor": 1.1}, one)
+    assert not gain.unvisited({"factor": 1.0, "curve": -0.1}, one)
+    small = replace(both, rudder=0.5 * both.rudder)
+    missing = gain.unvisited({"factor": 1.0, "curve": -0.1}, small)
+    assert missing == "rudder angles beyond 15 deg (these go to 10 deg)"
 
 
 def test_the_bundled_trials_visit_what_every_effect_is_about():

@@ -69,6 +69,19 @@ def test_a_stall_that_leaves_the_force_some_of_its_slope_is_no_gain_of_the_rudde
     assert found["ci95"][0] < 0.3 < found["ci95"][1]
 
 
+@pytest.mark.long
+def test_a_gain_that_changes_with_the_angle_is_no_flap_and_no_stall(tmp_path):
+    case = Case("curved", null(6).ship, {"rudder-gain": {"factor": 0.96, "curve": -0.12}}, 6, WHITE)
+    write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)
+    asked = ("rudder-gain", "rudder-stall", "rudder-limit", "rudder-offset", "flap")
+    result = diagnose(load_profile("suzaku"), load_trials(tmp_path), DiagnoseOptions(effects=asked))
+    assert [cause.tag for cause in result.causes] == ["rudder-gain"], result.sentence()
+    found = result.to_dict()["causes"][0]["parameters"]
+    for name, truth in {"factor": 0.96, "curve": -0.12}.items():
+        assert found[name]["ci95"][0] < truth < found[name]["ci95"][1]
+    assert "a factor that changed by -0.1" in result.sentence()
+
+
 def test_one_trial_of_the_menu_changes_its_revolutions():
     ship = load_profile("suzaku")
     (one,) = [one for one in menu(ship.L_pp / ship.approach.speed) if one.engine]

@@ -26,7 +26,7 @@ STRONG = {
     "dead-time": {"seconds": 2.2},
     "steering-lag": {"time_constant": 2.5, "rate_limit": 0.05, "to_starboard": 0.04, "to_port": 0.06},
     "backlash": {"play": 0.05},
-    "rudder-gain": {"factor": 0.9, "starboard": 1.1, "port": 0.95},
+    "rudder-gain": {"factor": 0.9, "starboard": 1.1, "port": 0.95, "curve": -0.1},
     "rudder-offset": {"angle": 0.02},
     "rudder-limit": {"angle": 0.35},
     "governor-lag": {"time_constant": 40.0},

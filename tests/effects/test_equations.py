@@ -302,7 +302,8 @@ def test_sensors_with_a_number_or_two(tag, value, seen):
     ("tag", "value", "left"),
     [
         ("rudder-offset", 0.02, Control(1.7, 0.32)),
-        ("rudder-gain", 0.9, Control(1.7, 0.3 * 0.9 * 0.9)),  # of both sides, and of starboard
+        # of both sides, of starboard, and as it changes with the angle
+        ("rudder-gain", 0.9, Control(1.7, 0.3 * 0.9 * 0.9 * (1.0 + 0.9 * (0.3 / np.radians(35.0)) ** 2))),
         ("rudder-limit", 0.25, Control(1.7, 0.25)),
         ("rudder-limit", 0.35, Control(1.7, 0.3)),
         ("backlash", 0.1, Control(1.7, 0.3)),  # in the middle of its play

@@ -213,11 +213,14 @@ def test_play_is_found_as_it_is_though_the_log_of_the_rudder_is_noisy():
     assert found.value("effects.backlash.play") == pytest.approx(2.0 * DEG, abs=0.1 * DEG)
 
 
-def test_the_rudder_may_move_more_to_one_side():
+def test_the_rudder_may_move_more_to_one_side_and_less_the_farther():
     effect = find_effect("rudder-gain")
-    e = effect.params(1.1, 1.2, 0.9)
+    e = effect.params(1.1, 1.2, 0.9, 0.0)
     for angle, factor in ((0.3, 1.32), (-0.3, 0.99), (0.0, 1.0)):
         assert effect.function(0.0, angle, 0.0, 1.0, e) == pytest.approx(factor * angle)
+    e = effect.params(1.1, 1.0, 1.0, -0.2)
+    for angle, factor in ((35.0, 0.8), (-35.0, 0.8), (17.5, 0.95), (70.0, 0.2), (105.0, 0.2), (-105.0, 0.2)):
+        assert effect.function(0.0, angle * DEG, 0.0, 1.0, e) == pytest.approx(1.1 * factor * angle * DEG)
 
 
 def test_a_shaft_follows_the_telegraph():

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from .suzaku import Parameters, coefficients, complete
+from .suzaku import PROFILE, Parameters, coefficients, complete
 
 if TYPE_CHECKING:
     from mmgtune.trial import Trial
@@ -119,6 +119,8 @@ def hull(s, t, U, v_, r_):
     """X [N], Y [N], N [N m] of the hull (14-15), with the terms of a hidden hull-term and asymmetry."""
     growth = s.resistance_factor + s.resistance_slope * (U - SPEED) / np.sqrt(G * s.L_pp)
     R_0 = s.R_0 * growth * (1.0 + s.unknown_fouling_growing * t / 600.0)
+    if 200.0 <= t < 320.0:
+        R_0 *= 1.0 + s.unknown_ice
     X = -R_0 + s.X_vv * v_**2 + s.X_vr * v_ * r_ + s.X_rr * r_**2 + s.X_vvvr * v_**3 * r_ + s.X_vvvv * v_**4
     Y = s.Y_v * v_ + s.Y_r * r_ + s.Y_vvv * v_**3 + s.Y_vvr * v_**2 * r_ + s.Y_vrr * v_ * r_**2 + s.Y_rrr * r_**3
     N = s.N_v * v_ + s.N_r * r_ + s.N_vvv * v_**3 + s.N_vvr * v_**2 * r_ + s.N_vrr * v_ * r_**2 + s.N_rrr * r_**3
@@ -211,6 +213,9 @@ def outside(s, t, y, psi, u_g, v_g):
     if 60.0 <= t < 180.0:
         Y += s.unknown_tug
         N += 0.4 * s.L_pp * s.unknown_tug
+    if t % 60.0 < 20.0:
+        Y += s.unknown_thruster_bursts
+        N += 0.4 * s.L_pp * s.unknown_thruster_bursts
     Y += s.steady_side
     N += s.steady_moment
     X += suction * np.sin(psi)
@@ -252,7 +257,7 @@ def blade_angle(s, followed, play):
     """Blade angle [rad] from that of the gear, after its lag: play, gain, zero, stop."""
     angle = min(max(play, followed - s.half_play), followed + s.half_play)
     side = s.gain_stbd if angle > 0.0 else s.gain_port
-    side *= 1.0 - s.unknown_indicator_cubic * (angle / np.radians(35.0)) ** 2
+    side *= 1.0 + (s.gain_curve - s.unknown_indicator_cubic) * (angle / np.radians(35.0)) ** 2
     return min(max(s.rudder_gain * side * angle + s.rudder_offset, -s.rudder_limit), s.rudder_limit)
 
 
@@ -433,6 +438,7 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
     u, v = scale["factor"] * scale["both"] * u * (1.0 + growing), scale["both"] * v
     u, v = u + zero["ahead"], v + zero["abeam"] + e["unknown-sway-bias"]["magnitude"]
     r = _low_pass(r, smooth["yaw_rate"])
+    r = r * (1.0 - e["unknown-gyro-compressed"]["magnitude"] * abs(r) * PROFILE["particulars.L_pp"] / SPEED)
     r = e["gyro-scale"]["factor"] * r + e["gyro-bias"]["rate"] + e["gyro-drift"]["yaw_rate"] * t
     late = e["clock-offset"]["seconds"] + e["unknown-clock-drift"]["magnitude"] * t / 600.0
     n, delta = np.interp(t - late, t, n), np.interp(t - late, t, delta)

@@ -108,7 +108,7 @@ NULL: dict[str, dict[str, float]] = {
     "rudder-offset": {"angle": 0.0},
     "dead-time": {"seconds": 0.0},
     "backlash": {"play": 0.0},
-    "rudder-gain": {"factor": 1.0, "starboard": 1.0, "port": 1.0},
+    "rudder-gain": {"factor": 1.0, "starboard": 1.0, "port": 1.0, "curve": 0.0},
     "steering-lag": {"time_constant": 0.0, "rate_limit": np.inf, "to_starboard": np.inf, "to_port": np.inf},
     "governor-lag": {"time_constant": 0.0},
     "engine-droop": {"share": 0.0},
@@ -180,6 +180,7 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["steering_lag"] = gear["time_constant"]
     p["dead_time"], p["half_play"] = e["dead-time"]["seconds"], 0.5 * e["backlash"]["play"]
     p["gain_stbd"], p["gain_port"] = e["rudder-gain"]["starboard"], e["rudder-gain"]["port"]
+    p["gain_curve"] = e["rudder-gain"]["curve"]
     p["governor_lag"] = e["governor-lag"]["time_constant"]
     p["engine_droop"] = e["engine-droop"]["share"]
     p["rpm_scale"], p["flap_scale"] = e["rpm-scale"]["factor"], e["flap"]["factor"]

@@ -53,7 +53,9 @@ UNKNOWN: dict[str, Unknown] = {
     "unknown-fouling-growing": Unknown("R_0' times 1 + magnitude t / 600 s", "-", (0.4, 0.6, 0.9)),
     "unknown-steering-hunting": Unknown("blade + magnitude sin(2 pi t / 15 s), not logged", "rad", _degrees(2, 3, 4)),
     "unknown-rudder-torsion": Unknown("blade angle times 1 - magnitude (U/U0)^2", "-", (0.12, 0.18, 0.25)),
-    "unknown-indicator-cubic": Unknown("blade angle times 1 - magnitude (delta / 35 deg)^2", "-", (-0.15, 0.15, 0.25)),
+    "unknown-indicator-cubic": Unknown(
+        "blade angle times 1 - magnitude (delta / 35 deg)^2", "-", (-0.15, 0.15, 0.25), "rudder-gain"
+    ),
     "unknown-inertia-yaw": Unknown("moment of inertia in yaw times 1 + magnitude", "-", (-0.35, 0.35, 0.5)),
     "unknown-hull-stall": Unknown(
         "hull Y and N less by magnitude tanh((|v'| - 0.15)/0.1) beyond", "-", (-0.2, 0.15, 0.25)
@@ -71,4 +73,9 @@ UNKNOWN: dict[str, Unknown] = {
     "unknown-controls-held": Unknown(
         "controls logged every magnitude seconds and held between", "s", (6.0, 8.0, 12.0), "inputs-held"
     ),
+    "unknown-thruster-bursts": Unknown(
+        "a bow thruster pushes to starboard for 20 s of each minute", "N", (6e3, -8e3, 1.2e4)
+    ),
+    "unknown-ice": Unknown("R_0' times 1 + magnitude from 200 s to 320 s", "-", (0.6, 1.0, 1.5)),
+    "unknown-gyro-compressed": Unknown("r logged times 1 - magnitude |r| L_pp / U0", "-", (0.1, 0.15, 0.25)),
 }
