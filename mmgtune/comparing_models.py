@@ -24,7 +24,7 @@ from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
 from .options.choice import must_be
-from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
+from .predictor import Predictor, Sampling, Uncertain, of_another_ship, particles_of, profile_of
 from .provenance import made_by
 from .recording import MOST, write_motions
 from .run_folders import MOTIONS
@@ -152,6 +152,12 @@ class ModelComparison(Displayed):
         """In a line."""
         return f"ModelComparison({', '.join(one.name for one in self.models[:4])} on {self.trials[-60:]})"
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the trials are of another ship than a model, that they are; each note once."""
+        of = (of_another_ship(one.predictor, self.data.ship, one.name) for one in self.models)
+        return tuple(dict.fromkeys(note for notes in of for note in notes))
+
     @cached_property
     def columns(self) -> tuple[Column, ...]:
         """All runs, each kind of manoeuvre, and after berthing each of its runs."""
@@ -227,6 +233,7 @@ class ModelComparison(Displayed):
                 }
                 for one in self.models
             ],
+            "notes": list(self.notes),
             "provenance": made_by(command),
             "wall_s": self.wall_s,
         }
@@ -312,7 +319,7 @@ def write_model_comparison(
 ) -> dict[str, Any]:
     """Write the record into a run folder, and the motions of whole trials.  Returns it.
 
-    notes  what a reader of the errors must know
+    notes  what a reader of the errors must know besides
 
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
@@ -323,7 +330,7 @@ def write_model_comparison(
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
     document = {
         **result.to_dict(command),
-        "notes": list(notes),
+        "notes": [*result.notes, *notes],
         "L_pp": result.models[0].predictor.L_pp,
         "inputs": [INPUTS[name].to_dict() for name in names],
         "out": str(folder),

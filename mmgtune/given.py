@@ -10,6 +10,7 @@ from typing import Any, Protocol, runtime_checkable
 from .errors import OptionError, Problem, TrialError, brief, kind_of, parts_of
 from .profile import ShipProfile, load_profile
 from .trial import IndexTrial, Trial, TrialSet, load_trials
+from .trial.by_hand import ship_of_all
 from .trial.unusable import increasing
 
 
@@ -77,6 +78,13 @@ def some_of(given: TrialsGiven) -> list[Trial]:
     if not several:
         raise TrialError(_NONE)
     return several
+
+
+def of_one_ship(given: TrialsGiven) -> tuple[list[Trial], str]:
+    """The same, and the id of their ship, "" where nothing says.  Raises TrialError also for trials of many ships."""
+    data = trials_of(given) if isinstance(given, (str, Path, TrialSet)) else None
+    several = some_of(given if data is None else data)
+    return several, ship_of_all(several) if data is None else data.ship
 
 
 def _several(given: object) -> list[Trial | IndexTrial]:

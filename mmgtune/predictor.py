@@ -22,7 +22,7 @@ from .given import Found, ship_of
 from .model import Model
 from .physics.quantities import State, Surroundings
 from .profile import ShipProfile
-from .trial import Trial, surroundings
+from .trial import Trial, another_ship, surroundings
 
 AT_ONCE = 100_000
 """Samples times members predicted at one time, but for those of a single case; bounds the memory (5 MB of states)."""
@@ -347,12 +347,27 @@ def draught_of(predictor: Predictor) -> float | None:
     return model.draught if isinstance(model, Model) else None
 
 
-def noted(predictor: Predictor, trials: Sequence[Trial]) -> list[str]:
-    """What a reader of what a model makes of trials must know of it and of their surroundings; nothing of what is no
-    model."""
-    if not isinstance(predictor, PhysicsPredictor):
+def noted(predictor: Predictor, trials: Sequence[Trial], ship: str, called: str = "") -> list[str]:
+    """What a reader of what a predictor makes of trials must know: that they are of another ship, and of a model what
+    is doubtful in it and what was around the ship.
+
+    ship    id of the ship they are of, "" where nothing says
+    called  what to call the predictor, where it is not by its name
+    """
+    found = of_another_ship(predictor, ship, called)
+    if isinstance(predictor, PhysicsPredictor):
+        found += [*predictor.doubted, *notes_on(predictor.model, trials)]
+    return found
+
+
+def of_another_ship(predictor: Predictor, ship: str, called: str = "") -> list[str]:
+    """Where trials are of another ship than a predictor, that they are; arguments as for ``noted``."""
+    if profile := profile_of(predictor):
+        return another_ship(ship, profile.id)
+    own = getattr(predictor, "id", None)
+    if not ship or not own or ship == own:
         return []
-    return [*predictor.doubted, *notes_on(predictor.model, trials)]
+    return [f"the trials are of '{ship}', '{called or predictor.name}' was trained for '{own}'"]
 
 
 def words_of(integrator: Integrator) -> str:

@@ -15,7 +15,7 @@ from .displayed import Plotted, inert
 from .errors import OptionError, Problem, among, brief, must_be_a
 from .evaluation import TrialRecord, evaluate
 from .files import all_or_none, path_of, refuse_existing
-from .given import ShipGiven, TrialsGiven, some_of
+from .given import ShipGiven, TrialsGiven, of_one_ship
 from .inputs import INPUTS
 from .manoeuvres.criteria import Criterion, check_stopping
 from .manoeuvres.stopping import stopping_indices
@@ -240,9 +240,9 @@ def simulate(
                 "leave out turn, zigzag, stop, speed and rpm",
             )
         )
-    several = some_of(trials)
+    several, of_ship = of_one_ship(trials)
     records = evaluate(predictor, several)
-    notes = noted(predictor, several)
+    notes = noted(predictor, several, of_ship)
     simulated = tuple(record.motion for record in records)
     return Simulated(predictor, simulated, records, options, (*notes, *_beyond(profile_of(predictor), simulated)))
 

@@ -154,10 +154,7 @@ def validate(
     scored = []
     for name, predictor in several.items():
         repeated = tuple(repetitions(predictor, whole)) if options.manoeuvres else ()
-        notes = noted(predictor, whole)
-        own = getattr(predictor, "id", None) if profile_of(predictor) is None else None
-        if own and data.ship and data.ship != own:
-            notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]
+        notes = noted(predictor, whole, data.ship, name)
         offsets = None
         if pieces and options.initial == "estimated":
             offsets = estimated(predictor, pieces, make_objective(predictor.L_pp))

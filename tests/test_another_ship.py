@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 import mmgtune
+from mmgtune.errors import TrialError
 from mmgtune.trial import another_ship
 from tests.command import run
 
@@ -60,6 +61,55 @@ def test_a_diagnosis_and_a_check_say_so(own, others):
     baseline = mmgtune.record_baseline("suzaku", own)
     assert SAID in mmgtune.check("suzaku", others, baseline).notes
     assert SAID not in mmgtune.check("suzaku", own, baseline).notes
+
+
+def test_what_simulates_and_scores_says_so(own, others):
+    validated = [mmgtune.validate("suzaku", of).profiles[0].notes for of in (others, list(others), own)]
+    simulated = [mmgtune.simulate("suzaku", of).notes for of in (others, list(others), own)]
+    predicted = [mmgtune.predict("suzaku", of).notes for of in (others, list(others), own)]
+    compared = [mmgtune.compare_models(["suzaku", "suzaku_fam"], of).notes for of in (others, list(others), own)]
+    for told in (validated, simulated, predicted, compared):
+        assert [sum(SAID in note for note in notes) for notes in told] == [1, 1, 0]
+
+
+def test_voyages_say_so(tmp_path, own):
+    trial = replace(own["turn_p35"], ship="kvlcc2", manoeuvre="voyage")
+    mmgtune.write_trial(trial, tmp_path / "log.parquet")
+    result = mmgtune.validate_voyages(["suzaku"], tmp_path)
+    assert result.notes["suzaku"][0] == SAID
+    assert SAID in run("validate", "suzaku", "log.parquet", "--no-report", cwd=tmp_path).err
+
+
+def test_commands_that_simulate_and_score_say_so(others, tmp_path):
+    mmgtune.write_trial(others["turn_p35"], tmp_path / "a.parquet")
+    for command in (
+        ("validate", "suzaku", "a.parquet"),
+        ("simulate", "-p", "suzaku", "-t", "a.parquet"),
+        ("predict", "suzaku", "-t", "a.parquet"),
+        ("compare", "suzaku", "suzaku_fam", "a.parquet"),
+    ):
+        assert f"note: {SAID}\n" in run(*command, cwd=tmp_path).err
+
+
+def test_trials_of_several_ships_are_refused(own):
+    mixed = [own["turn_p35"], own["turn_m35"], replace(own["turn_p20"], ship="kvlcc2")]
+    ids = [one.id for one in mixed]
+    for use in (
+        lambda: mmgtune.TrialSet(mixed, ids, []),
+        lambda: mmgtune.fit("suzaku", mixed, QUICK),
+        lambda: mmgtune.validate("suzaku", mixed),
+        lambda: mmgtune.simulate("suzaku", mixed),
+        lambda: mmgtune.predict("suzaku", mixed),
+    ):
+        with pytest.raises(TrialError) as caught:
+            use()
+        (problem,) = caught.value.problems
+        assert problem.what == "the trials are of 2 ships"
+        assert problem.why == "of 'suzaku': turn_p35, turn_m35; of 'kvlcc2': turn_p20"
+    named = mmgtune.TrialSet(mixed, ids, [], ship="suzaku")
+    assert named.ship == "suzaku"
+    assert SAID not in mmgtune.simulate("suzaku", named).notes
+    assert mmgtune.TrialSet([replace(own["turn_p35"], ship=""), own["turn_m35"]], [], []).ship == "suzaku"
 
 
 def test_a_command_says_the_same(others, tmp_path):

@@ -80,6 +80,8 @@ def command(
         c.print_json(document)
     else:
         c.show(summary(document))
+        for note in document["notes"]:
+            c.say(f"note: {note}")
 
 
 def summary(document: Mapping[str, Any]) -> str:

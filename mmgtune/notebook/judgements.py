@@ -78,7 +78,8 @@ def models(result: ModelComparison) -> View:
                     {"model": model.name, "begun anew": convention, "of": column.name, "L_MSE": cell.mean,
                      "deviation": cell.deviation, "diverged": cell.diverged}
                 )  # fmt: skip
-    return View(repr(result), [], rows, spare=("diverged", "deviation"))
+    notes = [f"{note}." for note in result.notes]
+    return View(repr(result), [], rows, notes, spare=("diverged", "deviation"))
 
 
 def profiles(result: Comparison) -> View:

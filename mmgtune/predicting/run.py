@@ -9,7 +9,7 @@ from typing import cast
 
 from ..bands import widest
 from ..errors import OptionError, Problem
-from ..given import ShipGiven, TrialsGiven, some_of
+from ..given import ShipGiven, TrialsGiven, of_one_ship
 from ..model import Model
 from ..networks import named_ship
 from ..options import PredictOptions
@@ -56,10 +56,10 @@ def predict(
     several = particles_of(whole, options.particles, options.seed, cast(Sampling, options.sampling))
     name = str(model) if isinstance(model, (str, Path)) else whole.name
     sigma: dict[str, float] = {}
-    given = [] if trials is None else some_of(trials)
-    notes = noted(whole, given)
+    given, of_ship = ([], "") if trials is None else of_one_ship(trials)
+    notes = noted(whole, given, of_ship)
     if trials is not None:
-        sigma = _sigma(given, options)
+        sigma = _sigma(given, of_ship, options)
         runs = tuple(on_trials(several, given, options.restart))
     elif orders is not None:
         of = tuple(several.inputs)
@@ -113,8 +113,8 @@ def _agree(orders: object, trials: object, options: PredictOptions) -> None:
         raise OptionError(Problem("nothing was measured", lost[0], why, f"name trials, or leave out {lost[0]}"))
 
 
-def _sigma(trials: Sequence[Trial], options: PredictOptions) -> dict[str, float]:
-    data = TrialSet({one.id: one for one in trials}, (), ())
+def _sigma(trials: Sequence[Trial], ship: str, options: PredictOptions) -> dict[str, float]:
+    data = TrialSet({one.id: one for one in trials}, (), (), ship)
     return sigma_of(data, options.sigma_from, "trials")
 
 

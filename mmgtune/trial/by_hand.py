@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from ..displayed import inert
 from ..errors import OptionError, Problem, TrialError, all_of, brief, kind_of, parts_of
 from .index_trial import IndexTrial
 from .model import Trial
@@ -16,6 +17,9 @@ Given = Mapping[str, Trial | IndexTrial] | Iterable[Trial | IndexTrial] | Trial 
 
 Roles = Mapping[str, tuple[str, ...]]
 """Ids of trials by "tune" and "test"."""
+
+NAMED = 3
+"""Trials of a ship that are named where there are several ships."""
 
 
 def trials_by_id(trials: Given, stated: Given) -> tuple[dict[str, Trial], dict[str, IndexTrial]]:
@@ -51,6 +55,20 @@ def roles_of(ids: Mapping[str, Iterable[str]], trials: Sequence[str]) -> Roles:
     if problems:
         raise TrialError(*problems)
     return found
+
+
+def ship_of_all(trials: Sequence[Trial | IndexTrial]) -> str:
+    """Id of the ship that trials are of, "" where none says.  Raises TrialError where they are of several."""
+    by_ship: dict[str, list[str]] = {}
+    for one in trials:
+        if one.ship:
+            by_ship.setdefault(one.ship, []).append(one.id)
+    if len(by_ship) > 1:
+        told = [f"{', '.join(ids[:NAMED])}{' and more' if len(ids) > NAMED else ''}" for ids in by_ship.values()]
+        why = "; ".join(f"of '{inert(ship)}': {ids}" for ship, ids in zip(by_ship, map(inert, told), strict=True))
+        fix = "make a set for each ship; where all are of one ship, TrialSet(..., ship=ID) says so"
+        raise TrialError(Problem(f"the trials are of {len(by_ship)} ships", "trials", why, fix))
+    return next(iter(by_ship), "")
 
 
 def _several(given: Any, name: str) -> list[Trial | IndexTrial]:

@@ -13,7 +13,7 @@ from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError, among, brief, closest, kind_of
 from ..phrases import counted
 from ..resources import folder, looked_for, must_be_name, profile_names, taken, trial_set_names
-from .by_hand import Given, roles_of, trials_by_id
+from .by_hand import Given, roles_of, ship_of_all, trials_by_id
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
@@ -31,13 +31,14 @@ class TrialSet(Plotted):
     tune, test  ids of ``trials``, in the order of the split; without a split all trials tune
     stated      trials of which only indices are known, by id; tune_stated, test_stated their ids likewise; those that
                 are named in tune and test are put there
-    ship        id of the ship, "" where neither split nor files say; where it is not given the first that a trial names
+    ship        id of the ship, "" where neither split nor files say; where it is not given the one that trials name
     licence     of the measurements and how to cite them, "" where the split does not say: profiles tuned to them
                 carry both
     path        folder or file they come from
 
     Raises OptionError for what is no trial or no list of ids.  Raises TrialError for two trials of one id, one under
-    the id of another, ids of no trial, ids that are named twice, and ids that both tune and test.
+    the id of another, ids of no trial, ids that are named twice, ids that both tune and test, and trials of several
+    ships where ``ship`` does not say of which all are.
     """
 
     trials: dict[str, Trial]
@@ -67,8 +68,8 @@ class TrialSet(Plotted):
         series, indices = trials_by_id(trials, stated)
         ids = {"tune": tune, "test": test, "tune_stated": tune_stated, "test_stated": test_stated}
         roles = roles_of(ids, [*series, *indices])
-        ships = [one.ship for one in series.values()] + [one.ship for one in indices.values()]
-        found: dict[str, Any] = {"trials": series, "stated": indices, "ship": ship or next(filter(None, ships), "")}
+        ship = ship or ship_of_all([*series.values(), *indices.values()])
+        found: dict[str, Any] = {"trials": series, "stated": indices, "ship": ship}
         found |= {"path": path, "licence": licence, "citation": citation}
         for role, named in roles.items():
             found[role] = tuple(name for name in named if name in series)

@@ -25,7 +25,7 @@ from ..networks.naming import sha256_of
 from ..objective import spread
 from ..options import VoyageOptions
 from ..options.choice import must_be
-from ..predictor import PhysicsPredictor, Predictor, Uncertain, draught_of, profile_of
+from ..predictor import PhysicsPredictor, Predictor, Uncertain, draught_of, of_another_ship, profile_of
 from ..provenance import made_by
 from ..threads import blas_on_one_thread
 from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
@@ -193,7 +193,10 @@ def validate_voyages(
         options=options,
         shorter=data.shorter,
         n_logs=len(data.voyages),
-        notes={name: _notes(one, around[name]) for name, one in predictors.items()},
+        notes={
+            name: (*of_another_ship(one, data.ship, name), *_notes(one, around[name]))
+            for name, one in predictors.items()
+        },
         interrupted=interrupted,
         wall_s=time.perf_counter() - began,
     )
