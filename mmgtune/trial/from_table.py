@@ -11,6 +11,7 @@ from ..errors import Problem, TrialError, brief, kind_of
 from ..units import canonical, name_and_unit
 from .metadata import as_json, problems_in
 from .model import Trial, fields_of
+from .raw_logs import TABLE_TO_LOG, table_instead
 from .schema import REQUIRED, known_column
 from .unusable import unusable
 
@@ -64,7 +65,9 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         raise TrialError(
             Problem(what, where, "all columns of a trial are as long as t", "write NaN where one has a gap")
         )
-    problems = problems_in(as_json({"id": id, **facts}), brief(id), tuple(columns)) + unusable(columns, where)
+    log = table_instead([*columns, *ignored], where)
+    problems = problems_in(as_json({"id": id, **facts}), brief(id), tuple(columns))
+    problems += [log] if log else unusable(columns, where, importing=TABLE_TO_LOG)
     if problems:
         raise TrialError(*problems)
     named = {"ship": "", "manoeuvre": "", "source": "", **facts}

@@ -7,7 +7,8 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from ..errors import Problem, TrialError
+from ..errors import Problem, TrialError, brief
+from ..phrases import listed
 from .schema import REQUIRED
 
 KINDS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log", ".nmea", ".xlsx", ".mat")
@@ -17,6 +18,9 @@ NOTES = ("readme", "licence", "license", "citation", "changelog")
 """Beginnings of names that text files beside data have."""
 
 WHY = "trials are Parquet files with columns of known names and units; a map says what the columns of a log are"
+
+NAMED = 12
+"""Columns of a table that are named."""
 
 
 class LogInstead(TrialError):
@@ -29,10 +33,32 @@ def refuse_log(path: Path, names: Collection[str], *, facts: bool) -> None:
     names  of its columns: few are those of a trial, in capitals or not, and there are others
     facts  whether it says of itself that it is a trial
     """
-    small = {name.strip().lower() for name in names}
-    held = sum(name in small for name in REQUIRED)
+    held = _held(names)
     if not facts and 2 * held < len(REQUIRED) and len(names) > held:
         raise LogInstead(instead(path, [path]))
+
+
+def table_instead(names: Collection[str], where: str) -> Problem | None:
+    """The problem of a table in memory of which the same is true; None where it is not.
+
+    names  of its columns
+    where  the trial it was to be, for messages
+    """
+    held = _held(names)
+    if 2 * held >= len(REQUIRED):
+        return None
+    what = "the table lacks most columns of a trial" if held else "the table has none of the columns of a trial"
+    there = [brief(name) for name in names]
+    wanted = [f"{name} [{column.unit}]" for name, column in REQUIRED.items()]
+    why = f"it has {listed(there, NAMED) or 'no columns'}; a trial has {listed(wanted)}"
+    fix = f"give its columns these names and units, or make a log of it: {TABLE_TO_LOG}"
+    return Problem(what, where, why, fix)
+
+
+def _held(names: Collection[str]) -> int:
+    """How many of the columns of a trial are among names, in capitals or not."""
+    small = {name.strip().lower() for name in names}
+    return sum(name in small for name in REQUIRED)
 
 
 def raw_logs(path: Path) -> list[Path]:
@@ -68,6 +94,10 @@ def import_commands(argument: str) -> str:
         f"mmgtune trials map {argument} -o map.toml, look at what it asks, then "
         f"mmgtune trials import {argument} --map map.toml -o imported, and give the folder imported"
     )
+
+
+TABLE_TO_LOG = f'table.to_csv("log.csv", index=False), then {import_commands("log.csv")}'
+"""How trials are made of a table in memory whose columns are not those of a trial."""
 
 
 def _as_argument(path: Path, found: Sequence[Path]) -> str:

@@ -30,14 +30,17 @@ PER_MINUTE = 58.6
 """From so many times as far as the heading on, a yaw rate turns in rad/min (60), not in degrees per second (57.3)."""
 
 
-def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection[str] = ()) -> list[Problem]:
+def unusable(
+    columns: Mapping[str, FloatArray], where: str, reported: Collection[str] = (), importing: str = ""
+) -> list[Problem]:
     """Every reason why a trial cannot be simulated, [] where there is none.
 
     columns  arrays (n_samples,) by their name in the file; required ones may be missing, which is a problem
     where    the file, for messages
     reported columns of the file that hold no numbers, and of which that has been said
+    importing what makes trials of what is none, where that is no file
     """
-    problems = missing_columns(columns, where, reported)
+    problems = missing_columns(columns, where, reported, importing)
     samples = max((len(values) for values in columns.values()), default=0)
     if samples < FEWEST_SAMPLES:
         return [*problems, too_short(samples, where)]
@@ -74,8 +77,10 @@ def unusable_part(columns: Mapping[str, FloatArray], where: str, before: float, 
         return problems + _rudder(columns, where)
 
 
-def missing_columns(columns: Collection[str], where: str, reported: Collection[str] = ()) -> list[Problem]:
-    """Required columns that are not there; ``columns`` by their name in the file, ``reported`` as above."""
+def missing_columns(
+    columns: Collection[str], where: str, reported: Collection[str] = (), importing: str = ""
+) -> list[Problem]:
+    """Required columns that are not there; ``columns`` by their name in the file, the others as above."""
     others = [name for name in columns if name not in REQUIRED]
     missing = [name for name in REQUIRED if name not in columns and name not in reported]
     renames = renamed(missing, others)
@@ -89,7 +94,7 @@ def missing_columns(columns: Collection[str], where: str, reported: Collection[s
     if geographic:
         what = f"positions are in latitude and longitude: {', '.join(geographic)}"
         why = "trials have x and y, north and east of a local origin [m]; importing makes them"
-        problems.append(Problem(what, where, why, import_commands(shlex.quote(where))))
+        problems.append(Problem(what, where, why, importing or import_commands(shlex.quote(where))))
     said = {*renames, *(("x", "y") if geographic else ())}
     return problems + [
         Problem(

@@ -81,6 +81,31 @@ def test_what_is_wrong_is_said_as_of_a_file(table, change, said):
 
 
 @pytest.mark.parametrize(
+    ("names", "what"),
+    [
+        (["time", "lat", "lon", "hdg", "sog"], "the table has none of the columns of a trial"),
+        (["t", "x", "y", "heading", "speed"], "the table lacks most columns of a trial"),
+        ([], "the table has none of the columns of a trial"),
+    ],
+)
+def test_a_table_with_other_columns_has_one_problem(names, what):
+    with pytest.raises(TrialError) as found:
+        trial_of(pd.DataFrame({name: np.arange(60.0) for name in names}), "one")
+    (problem,) = found.value.problems
+    assert problem.what == what
+    assert "a trial has t [s], x [m], y [m], psi [rad], u [m/s], v [m/s], r [rad/s], n [1/s] and delta" in problem.why
+    assert all(f"'{name}'" in problem.why for name in names)
+    assert 'table.to_csv("log.csv", index=False), then mmgtune trials map log.csv' in problem.fix
+
+
+def test_positions_in_degrees_of_a_table_are_not_looked_for_in_a_file_of_its_id(table):
+    with pytest.raises(TrialError) as found:
+        trial_of(table.rename(columns={"x": "lat", "y": "lon"}), "one")
+    assert "trials map one" not in str(found.value)
+    assert "trials map log.csv" in str(found.value)
+
+
+@pytest.mark.parametrize(
     "gap",
     [
         lambda x: x.astype(object).where(x.index != 5, None),
