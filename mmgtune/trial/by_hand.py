@@ -9,6 +9,7 @@ from typing import Any
 from ..displayed import inert
 from ..errors import OptionError, Problem, TrialError, all_of, brief, kind_of, parts_of
 from .index_trial import IndexTrial
+from .metadata import nameless, without_id
 from .model import Trial
 from .split import in_both, wrong_ids
 
@@ -26,9 +27,12 @@ def trials_by_id(trials: Given, stated: Given) -> tuple[dict[str, Trial], dict[s
     """Time series, and trials of which only indices are known, by id.
 
     trials, stated  each by id, several of them, or a single one; those of stated indices may be among the trials
-    Raises OptionError for what is no trial, TrialError for two of one id and for one under the id of another.
+    Raises OptionError for what is no trial, TrialError for one without an id, two of one id and one under the id of
+    another.
     """
     every = [*_several(trials, "trials"), *_several(stated, "stated")]
+    if any(nameless(one.id) for one in every):
+        raise TrialError(without_id("trials"))
     twice = [id for id, count in Counter(one.id for one in every).items() if count > 1]
     if twice:
         why = "trials are told apart by their ids"

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, brief, kind_of
 from ..units import canonical, name_and_unit
-from .metadata import as_json, problems_in
+from .metadata import as_json, nameless, problems_in, without_id
 from .model import Trial, fields_of
 from .raw_logs import TABLE_TO_LOG, table_instead
 from .schema import REQUIRED, known_column
@@ -66,7 +66,8 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
             Problem(what, where, "all columns of a trial are as long as t", "write NaN where one has a gap")
         )
     log = table_instead([*columns, *ignored], where)
-    problems = problems_in(as_json({"id": id, **facts}), brief(id), tuple(columns))
+    problems = [without_id("id")] if nameless(id) else []
+    problems += problems_in(as_json({"id": id, **facts}), brief(id), tuple(columns))
     problems += [log] if log else unusable(columns, where, importing=TABLE_TO_LOG)
     if problems:
         raise TrialError(*problems)

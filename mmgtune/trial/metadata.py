@@ -86,6 +86,17 @@ def problems_in(facts: Mapping[str, Any], where: str, columns: Sequence[str]) ->
     return problems + noise_problems(facts.get("noise", {}), where, columns)
 
 
+def nameless(id: object) -> bool:
+    """Whether an id is a text of nothing but spaces."""
+    return isinstance(id, str) and not id.strip()
+
+
+def without_id(where: str) -> Problem:
+    """The problem of a trial in memory that has no id; a file without one is called after itself."""
+    why = "trials are told apart by their ids, and results are named after them"
+    return Problem("the id of a trial is empty", where, why, 'give it one, such as "turn_p35"')
+
+
 def noise_problems(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:
     """What is wrong with standard deviations by column."""
     if not isinstance(noise, dict):

@@ -98,6 +98,17 @@ def test_a_table_with_other_columns_has_one_problem(names, what):
     assert 'table.to_csv("log.csv", index=False), then mmgtune trials map log.csv' in problem.fix
 
 
+@pytest.mark.parametrize("id", ["", "  "])
+def test_an_empty_id_is_refused(table, id):
+    for make in (
+        lambda: trial_of(table, id),
+        lambda: mmgtune.TrialSet([replace(trial_of(table, "a"), id=id)], [id], []),
+        lambda: mmgtune.fit("suzaku", [replace(trial_of(table, "a"), id=id)]),
+    ):
+        with pytest.raises(TrialError, match="the id of a trial is empty"):
+            make()
+
+
 def test_positions_in_degrees_of_a_table_are_not_looked_for_in_a_file_of_its_id(table):
     with pytest.raises(TrialError) as found:
         trial_of(table.rename(columns={"x": "lat", "y": "lon"}), "one")
