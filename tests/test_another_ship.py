@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import mmgtune
@@ -58,6 +59,10 @@ def test_others_that_learn_from_trials_say_so(own, others):
 def test_a_diagnosis_and_a_check_say_so(own, others):
     found = mmgtune.diagnose("suzaku", others, mmgtune.DiagnoseOptions(effects=("antenna",)))
     assert f"T{SAID[1:]}." in found.warnings
+    frame = found.gain.compared.to_frame()
+    assert [list(frame["trial"]), set(frame["role"])] == [[one.trial.id for one in found.gain.compared], {"test"}]
+    assert np.isfinite(frame[["off track before [m]", "off track after [m]"]]).all(axis=None)
+    assert "test" in repr(found.gain.compared)
     baseline = mmgtune.record_baseline("suzaku", own)
     assert SAID in mmgtune.check("suzaku", others, baseline).notes
     assert SAID not in mmgtune.check("suzaku", own, baseline).notes

@@ -14,7 +14,7 @@ from ..backends import STATES
 from ..displayed import Brief
 from ..documents import finite
 from ..fitting.box import group_of
-from ..fitting.comparison import TrialComparison
+from ..fitting.comparison import ComparedTrials, TrialComparison
 from ..fitting.least_squares import fit_offsets, squares_by_case
 from ..fitting.problem import FitProblem
 from ..model import Model
@@ -71,7 +71,7 @@ class Gain(Brief):
     """Before and after the causes, on held-out trials with their initial states estimated.
 
     held_out    the test trials; each in turn where there are none; the only one where there is but one
-    compared    every held-out trial, "before" and "after"
+    compared    every held-out trial, "before" and "after"; ``compared.to_frame()`` has a row a trial
     excess      (n_trials, 2) chi-squared beyond the noise of the sensors, freed of its memory, before and after
     floor       chi-squared of all held-out trials by noise alone
     chance      standard deviation of chi-squared by noise alone
@@ -81,7 +81,7 @@ class Gain(Brief):
     """
 
     held_out: HeldOut
-    compared: tuple[TrialComparison, ...]
+    compared: ComparedTrials
     excess: FloatArray
     floor: float
     chance: float
@@ -332,7 +332,8 @@ def measured(found: Found, unseen: Unseen) -> Gain:
     bench, test = unseen.bench, unseen.test
     if test:
         compared, excess = _on(bench, found.base, found.final, test)
-        return Gain("test", tuple(compared), excess, *_chance(bench, test, found.final), _share_used(found.final, test))
+        by_noise, used = _chance(bench, test, found.final), _share_used(found.final, test)
+        return Gain("test", ComparedTrials(compared), excess, *by_noise, used)
     every: list[TrialComparison] = []
     rows = []
     for (before, after), trials in unseen.fits((found.base, found.final)):
@@ -340,10 +341,10 @@ def measured(found: Found, unseen: Unseen) -> Gain:
         every += compared
         rows.append(excess)
     if len({trial.run for trial in bench.trials}) < 2:
-        return Gain("only", tuple(every), np.concatenate(rows), *_chance(bench, bench.trials))
+        return Gain("only", ComparedTrials(every), np.concatenate(rows), *_chance(bench, bench.trials))
     used = FIRST if any(group_of(name) for name in found.final.names) else 0.0
     left = (1.0 - used) * sum(trial.n_samples for trial in bench.trials)
-    return Gain("each", tuple(every), np.concatenate(rows), *_by_noise(bench, left), used)
+    return Gain("each", ComparedTrials(every), np.concatenate(rows), *_by_noise(bench, left), used)
 
 
 def _share_used(point: Point, trials: Sequence[Trial]) -> float:

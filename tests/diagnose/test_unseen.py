@@ -16,6 +16,7 @@ from mmgtune.diagnose.noise import ChannelNoise
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Beside, Unseen
 from mmgtune.diagnose.workbench import Point, Workbench, make_workbench
+from mmgtune.fitting import ComparedTrials
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials
@@ -61,17 +62,17 @@ def test_values_of_runs_are_estimated_in_runs_held_out_and_each_run_is_compared_
 )
 def test_causes_are_told_worse_by_most_test_trials_or_not_at_all(before, after, worse):
     excess = np.column_stack([before, after]).astype(float)
-    gain = Gain("test", (), excess, floor=100.0, chance=5.0)
+    gain = Gain("test", ComparedTrials(), excess, floor=100.0, chance=5.0)
     assert gain.worse is worse
     assert gain.mostly_remains  # in all of these
-    assert not Gain("test", (), excess, floor=100.0, chance=5.0, unsure=1e5).mostly_remains
-    assert not Gain("each", (), excess, floor=100.0, chance=5.0).worse
+    assert not Gain("test", ComparedTrials(), excess, floor=100.0, chance=5.0, unsure=1e5).mostly_remains
+    assert not Gain("each", ComparedTrials(), excess, floor=100.0, chance=5.0).worse
 
 
 def left_out(*excess: tuple[float, float], held_out="each") -> Gain:
     """Runs of 100 samples each that were left out in turn, with chi-squared beyond noise before and after causes."""
     compared = [SimpleNamespace(trial=SimpleNamespace(run=str(k), n_samples=100)) for k in range(len(excess))]
-    return Gain(held_out, tuple(compared), np.array(excess), floor=600.0 * len(excess), chance=40.0)
+    return Gain(held_out, ComparedTrials(compared), np.array(excess), floor=600.0 * len(excess), chance=40.0)
 
 
 @pytest.mark.parametrize(
