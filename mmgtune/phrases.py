@@ -20,14 +20,15 @@ def counted(amount: int, noun: str, plural: str = "") -> str:
     return f"{amount} {noun if amount == 1 else plural or noun + 's'}"
 
 
-def counted_pieces(wholes: Sequence[str], ids: Sequence[str]) -> str:
+def counted_pieces(wholes: Sequence[str], ids: Sequence[str], piece: str = "window") -> str:
     """How many trials there are, in words: "5 trials"; where they were cut into windows "65 windows of 5 trials".
 
     wholes  of each trial, or window of one, the id of the trial
     ids     their own ids, in the same order
+    piece   what one is that is no whole trial
     """
     trials = counted(len(set(wholes)), "trial")
-    return trials if list(wholes) == list(ids) else f"{counted(len(ids), 'window')} of {trials}"
+    return trials if list(wholes) == list(ids) else f"{counted(len(ids), piece)} of {trials}"
 
 
 def in_percent(part: float, counted: bool = False) -> str:

@@ -14,7 +14,7 @@ from .advice import shortest
 from .blocks import Block, Card, Fold, Picture, Prose, Section, Table
 from .plot import Figure
 from .tables import pairs, tone
-from .wording import NONE, change, clean, count, number, percent, sentence, shown
+from .wording import NONE, change, clean, count, number, percent, piece_of, sentence, shown
 
 
 def generated_banner(trials: Mapping[str, Any]) -> tuple[str, ...]:
@@ -94,7 +94,7 @@ def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]
     off = {key: {which: mean(rows, which) for which in ("before", "after")} for key, mean in means.items()}
     trials = {row.get("part_of") or row["id"] for row in rows}
     cut = {"windows": len(rows)} if any(row.get("part_of") for row in rows) else {}
-    cards = list(off_cards({"trials": len(trials), **cut, **off}, where))
+    cards = list(off_cards({"trials": len(trials), **cut, **off}, where, piece_of(rows)))
     tuned = change(data.get("J_tune_before"), data.get("J_tune"))
     if held and number(data.get("J_test")) is not None:
         moved = change(data.get("J_test_before"), data["J_test"])
@@ -108,15 +108,16 @@ def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]
     return tuple(cards)
 
 
-def off_cards(off: Mapping[str, Any], where: str) -> tuple[Card, ...]:
+def off_cards(off: Mapping[str, Any], where: str, piece: str = "window") -> tuple[Card, ...]:
     """How far off track [m] and heading [deg] trials are before and after tuning, as ``sweep.json`` says it.
 
     where  what the trials are
+    piece  what one is where trials were cut
     """
     trials = count(off["trials"], "trial")
     note = f"root mean square of each trial, mean of {trials}"
     if "windows" in off:
-        note = f"root mean square of each window, mean of {count(off['windows'], 'window')} of {trials}"
+        note = f"root mean square of each {piece}, mean of {count(off['windows'], piece)} of {trials}"
     cards = []
     for key, label, unit, digits in (("track_m", "Off track", " m", 3), ("heading_deg", "Off heading", "°", 2)):
         before, after = (number(off[key].get(which)) for which in ("before", "after"))

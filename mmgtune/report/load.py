@@ -119,8 +119,9 @@ class DiagnosisRecord:
 
     @property
     def results(self) -> list[dict[str, Any]]:
-        """The held-out trials' results."""
-        return list(self.data["trial_results"])
+        """The held-out trials' results; where a position jumps they are of parts, which are no windows."""
+        piece = {"piece": "part"} if self.data.get("jumped") else {}
+        return [{**row, **piece} for row in self.data["trial_results"]]
 
 
 def find(folder: Path, kinds: Iterable[Kind]) -> tuple[Kind, Any]:

@@ -65,7 +65,12 @@ def count_of_trials(rows: Sequence[Mapping[str, Any]]) -> str:
     """How many trials rows of ``trial_results`` are of, "5 trials" or "65 windows of 5 trials"; records of older
     versions do not say what a window is of."""
     ids = [str(row["id"]) for row in rows]
-    return phrases.counted_pieces([row.get("part_of") or row["id"] for row in rows], ids)
+    return phrases.counted_pieces([row.get("part_of") or row["id"] for row in rows], ids, piece_of(rows))
+
+
+def piece_of(rows: Sequence[Mapping[str, Any]]) -> str:
+    """What rows that are not of whole trials are of: "window", or "part" where runs were divided otherwise."""
+    return next((str(row["piece"]) for row in rows if "piece" in row), "window")
 
 
 _SUFFIXES = (

@@ -33,6 +33,7 @@ from mmgtune.report import (
     wording,
 )
 from mmgtune.report.blocks import Fold, Motions, Page, Picture, Section, Table
+from mmgtune.report.common import cards_of_misfit
 from mmgtune.report.html import embedded
 from mmgtune.report.kinds import KINDS
 from mmgtune.report.markdown import escaped
@@ -50,6 +51,20 @@ from mmgtune.trial import load_trials
 )  # fmt: skip
 def test_shown(value: object, text: str) -> None:
     assert wording.shown(value) == text
+
+
+def test_parts_of_a_run_that_jumps_are_no_windows(tmp_path: Path) -> None:
+    rows = [
+        {"id": id, "part_of": id.partition("@")[0], "rms": {"x": rms, "y": rms, "psi": rms}}
+        for id in ("turn@0", "turn@90", "zigzag@0")
+        for rms in [{"before": 2.0, "after": 1.0}]
+    ]
+    for jumped, pieces in (({"turn": 12.0}, "3 parts of 2 trials"), ({}, "3 windows of 2 trials")):
+        record = load.DiagnosisRecord(tmp_path, {"trial_results": rows, "jumped": jumped}, {})
+        assert wording.count_of_trials(record.results) == pieces
+        notes = [card.note for card in cards_of_misfit({}, record.results, where="held out")]
+        assert notes == [f"root mean square of each {pieces.split()[1][:-1]}, mean of {pieces}"] * len(notes)
+        assert notes
 
 
 def test_percent() -> None:
