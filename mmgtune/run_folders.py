@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Iterable, Iterator
+from contextvars import ContextVar
 from pathlib import Path
 
 from .errors import OutputError, Problem
@@ -65,6 +66,33 @@ FIGURES = "figures"
 
 CHECKPOINTS = "training-*.safetensors"
 """What is left of a training that was stopped before it had a result."""
+
+
+_KEPT: ContextVar[list[Path] | None] = ContextVar("kept", default=None)
+
+
+def remove_kept(paths: Iterable[Path]) -> None:
+    """Delete what a run would be continued from, its result being written; within ``kept`` that is noted alone."""
+    noted = _KEPT.get()
+    if noted is not None:
+        noted += paths
+        return
+    for path in paths:
+        path.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def kept() -> Iterator[list[Path]]:
+    """What a run would be continued from stays within this context, for whoever has more to write than its result.
+
+    What is noted on the way is to be deleted once all of it is written.
+    """
+    noted: list[Path] = []
+    token = _KEPT.set(noted)
+    try:
+        yield noted
+    finally:
+        _KEPT.reset(token)
 
 
 def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:

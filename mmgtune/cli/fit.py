@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from ..fitting.comparison import TrialComparison
 
 
+BANDS = "the bands"
+"""What may be stopped when the fit itself is complete."""
+
 LONG = 60.0
 """Seconds that a fit may take without a word on how it could take fewer."""
 
@@ -82,8 +85,9 @@ def command(
             command=c.command_line(),
         )
         document = write_run(result, folder, overwrite=True)
-        progress.saved(result.interrupted)
-        if bands and not result.interrupted:
+        with_bands = bands and not result.interrupted
+        progress.saved(result.interrupted, but=BANDS if with_bands else "")
+        if with_bands:
             drawn = posterior(
                 result.tuned_profile(),
                 data,
@@ -95,6 +99,7 @@ def command(
             made = write_posterior(drawn, folder, overwrite=True)
             document["bands"] = {**made, "warnings": [*made["warnings"], *notes], "predicted": found}
             write_document(document, folder)
+            progress.saved(False, but=BANDS if drawn.interrupted else "")
         if not no_report:
             render(folder)
     if run.json:

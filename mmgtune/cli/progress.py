@@ -7,6 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from shlex import quote
 from types import TracebackType
@@ -33,6 +34,8 @@ ASKED_EVERY = 0.25
 class Progress:
     """A context in which a long command reports what it does, can be interrupted, and writes its results.
 
+    What it is continued from stays until all is written, the report too: a command that is killed before can go on.
+
     folder     where the results go, for messages
     kept       what is saved of a command that is stopped
     left       how long the phase of that name and all after it may take, in words; asked again and again
@@ -52,6 +55,9 @@ class Progress:
         self.kept = kept
         self._signal: int | None = None
         self._saved = ""
+        self._whole = True
+        self._kept = ExitStack()
+        self._done_with: list[Path] = []
         self._phase = ""
         self._began = time.monotonic()
         self._last_line = self._last_asked = 0.0
@@ -71,7 +77,10 @@ class Progress:
         return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=self._asked)
 
     def __enter__(self) -> Progress:
+        from ..run_folders import kept
+
         interrupts.handle(self._interrupt)
+        self._done_with = self._kept.enter_context(kept())
         if not self.quiet and sys.stderr.isatty():
             from rich.console import Console
 
@@ -85,14 +94,22 @@ class Progress:
         if self._status is not None:
             self._status.stop()
             self._status = None
+        self._kept.close()
+        for path in self._done_with if error is None and self._whole else ():
+            path.unlink(missing_ok=True)
         interrupts.handle(interrupts.stop_at_once(self._saved or interrupts.continued(self.folder)))
 
-    def saved(self, interrupted: bool) -> None:
+    def saved(self, interrupted: bool, but: str = "") -> None:
         """Note that the result is written.
 
         interrupted  whether it is less than was asked for; Ctrl-C may also come when it is complete
+        but          the one part of it that is not there yet, or less than was asked for
         """
-        if not interrupted:
+        self._whole = not but
+        if but:
+            again = f"--resume --out {quote(str(self.folder))} continues"
+            self._saved = f"the results in {self.folder} are complete but for {but}; {again}"
+        elif not interrupted:
             self._saved = f"the results in {self.folder} were complete by then"
         else:
             self._saved = f"{self.kept} is in {self.folder}; --resume --out {quote(str(self.folder))} continues"

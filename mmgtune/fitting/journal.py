@@ -25,6 +25,7 @@ import numpy as np
 
 from ..errors import MmgtuneError, OptionError, OutputError, Problem
 from ..files import cannot_write, write_text
+from ..run_folders import remove_kept
 from .checkpoint import NAME as CHECKPOINT
 from .checkpoint import differing, nothing_to_resume
 
@@ -173,9 +174,8 @@ def journalled(
 
 def finished(folder: Path, *names: str) -> None:
     """Delete what a run in this folder would be continued from, or the journals of those names: its result is
-    written."""
-    for name in names or (CHECKPOINT, NAME):
-        (folder / name).unlink(missing_ok=True)
+    written.  A command does so when its report is written too."""
+    remove_kept(folder / name for name in names or (CHECKPOINT, NAME))
 
 
 class Counts(Protocol):

@@ -24,7 +24,7 @@ from ..networks import (
 from ..objective import spread
 from ..predictor import Predictor, as_predictor
 from ..resources import MODEL
-from ..run_folders import CHECKPOINTS
+from ..run_folders import CHECKPOINTS, remove_kept
 from ..scores import score, summary
 from ..trial import Trial
 from .choosing import pieces_of
@@ -220,6 +220,5 @@ def write_learned(
     document["out"] = str(folder)
     write_json(document, folder / name)
     if not result.interrupted:
-        for path in folder.glob(CHECKPOINTS):
-            path.unlink()
+        remove_kept(folder.glob(CHECKPOINTS))
     return document

@@ -3,10 +3,12 @@
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
 from mmgtune.cli import interrupts
+from mmgtune.trial import load_trials, write_trial
 
 WATCHED = """
 import os, signal, sys
@@ -126,6 +128,62 @@ fitting.fit = interrupted
         "interrupted: stopped at once; --resume --out run continues from the last checkpoint"
     )
     assert list((tmp_path / "run").iterdir()) == []
+
+
+@pytest.mark.daily("1")
+@pytest.mark.parametrize("times", [1, 2])
+def test_bands_that_are_stopped_are_named(tmp_path, times):
+    """Of a fit that is complete; --resume draws them."""
+    before = f"""
+import mmgtune.posterior as posterior
+draw = posterior.posterior
+def interrupted(*given, **named):
+    {"; ".join(["sent()"] * times)}
+    return draw(*given, **named)
+posterior.posterior = interrupted
+"""
+    few = ("fit", *FEW, "--ar", "0.5", "--bands")
+    found = ended(tmp_path, *few, before=before)
+    assert found.returncode == 130, found.stderr
+    said = "interrupted: the results in run are complete but for the bands; --resume --out run continues"
+    assert found.stderr.splitlines()[-1] == said
+    assert (tmp_path / "run" / "fit.json").exists()
+    assert (tmp_path / "run" / "particles.parquet").exists() is (times == 1)
+    again = ended(tmp_path, *few, "--resume")
+    assert again.returncode == 0, again.stderr
+    assert "particles" in again.stdout
+    assert "Stopped before its end" not in again.stdout
+
+
+TUNED = ("--targets", "R_0,w_P0", "--starts", "1")
+BARE = ("--quiet", "--out", "run")
+KILLED = {
+    "fit": ("fit", *TUNED, "--method", "least-squares", "--ar", "0.5", *BARE),
+    "cmaes": ("fit", "--targets", "R_0", "--ar", "0.5", *BARE),
+    "sweep": ("sweep", *TUNED, "--method", "least-squares", "--ar", "0.2", *BARE),
+    "leave-out": ("leave-out", *TUNED, "--folds", "2", *BARE),
+    "diagnose": ("diagnose", "--effects", "antenna", *BARE),
+    "voyages": ("validate", "suzaku", "voyages", *BARE),
+}
+
+
+@pytest.mark.daily("fit")
+@pytest.mark.parametrize("of", KILLED)
+def test_a_run_that_is_killed_while_its_report_is_drawn_goes_on(tmp_path, of):
+    trial = load_trials("suzaku")["turn_p35"]
+    write_trial(replace(trial, manoeuvre="voyage"), tmp_path / "voyages" / "one.parquet")
+    before = "import mmgtune.report as report; report.render = lambda *_: sent()"
+    killed = ended(tmp_path, *KILLED[of], number=signal.SIGKILL, before=before)
+    assert killed.returncode == -signal.SIGKILL
+    (result,) = (tmp_path / "run").glob("[!r]*.json")
+    assert not (tmp_path / "run" / "report.html").exists()
+    again = ended(tmp_path, *KILLED[of], "--resume")
+    assert again.returncode == 0, again.stderr
+    assert (tmp_path / "run" / "report.html").exists()
+    assert result.exists()
+    kept = [one.name for one in (tmp_path / "run").iterdir() if one.suffix in (".jsonl", ".npz")]
+    assert kept == []
+    assert "the run there has ended" in ended(tmp_path, *KILLED[of], "--resume").stderr
 
 
 def test_what_goes_on_is_told_as_it_may_be_typed(tmp_path):
