@@ -11,6 +11,9 @@ from typing import Any
 
 from .errors import OptionError, Problem, brief
 
+EVALUATIONS = "evaluations"
+"""What progress of least squares is counted in: what there is in all may be exceeded."""
+
 _TAKES = {
     "on_phase": " words: print(words)",
     "on_progress": " done, of, words: print(done, of)",
@@ -26,7 +29,8 @@ class Hooks:
 
     on_phase       called with a few words when a new part of the work begins
     on_progress    called with what is done, what there is in all, and where the work stands in words: updates of a
-                   training, rows of voyages
+                   training, rows of voyages, "parts" that are left out in turn, and "evaluations" of least squares,
+                   of as many as are seldom exceeded
     on_generation  called after each generation of CMA-ES with the search
     stop           asked often; True ends the work with the best so far
     """

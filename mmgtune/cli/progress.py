@@ -18,7 +18,7 @@ import typer
 from ..units import in_time
 from . import interrupts
 from .output import harmless, say
-from .pace import Pace
+from .pace import Pace, Work
 
 if TYPE_CHECKING:
     from ..fitting.cmaes import Search
@@ -63,6 +63,7 @@ class Progress:
         self._last_line = self._last_asked = 0.0
         self._pace = Pace()
         self._candidates = 0
+        self._work: Work | None = None
         self._status: Any = None
 
     @property
@@ -74,7 +75,7 @@ class Progress:
         """What to hand to the fit."""
         from ..hooks import Hooks
 
-        return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=self._asked)
+        return Hooks(self._on_phase, self._on_progress, self._on_generation, self._asked)
 
     def __enter__(self) -> Progress:
         from ..run_folders import kept
@@ -138,6 +139,10 @@ class Progress:
             self._last_asked = now
             if left := self._left(self._phase):
                 self._show(f"{self._phase}, {left}")
+            elif self._candidates:
+                pass  # each generation says more
+            elif self._work:
+                self._show(f"{self._phase}: {self._work.words(self._so_far())}")
             else:
                 self._show(f"{self._phase}, {self._so_far()}", every=TIME_EVERY)
         return self.stopped
@@ -149,8 +154,16 @@ class Progress:
     def _on_phase(self, words: str) -> None:
         self._phase = words
         self._pace, self._candidates = Pace(), 0
-        left = self._left(words)
+        if self._work and self._work.of_phase:
+            self._work = None
+        left = self._left(words) or (self._work.words(self._so_far()) if self._work else "")
         self._show(f"{words}, {left}" if left else words, line=True)
+
+    def _on_progress(self, done: int, total: int, noun: str) -> None:
+        """So much of the work is done; it is told when a phase begins and when it is asked whether to stop."""
+        if self._work is None or self._work.noun != noun:
+            self._work = Work(noun)
+        self._work.reached(done, total)
 
     def on_share(self, done: int, total: int, words: str) -> None:
         """A share of the work is done: tell it, with the time that is left where the pace is known."""

@@ -37,6 +37,7 @@ from ..stated import IndexComparison, compare_stated
 from ..tables import write_table
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, another_ship, oddities
+from .amounts import telling
 from .comparison import ComparedTrials, TrialComparison
 from .extending import held_words, settled, tune_trials
 from .folder import motions_table
@@ -289,7 +290,8 @@ def _leave_out(
     trials, model = fit.trials, fit.problem.model
     dealt = list(leaving_out(trials, asked.folds))
     parts = []
-    for out, others in dealt:
+    for k, (out, others) in enumerate(dealt):
+        hooks.on_progress(k, len(dealt), "parts")
         part = None if hooks.stop() else fit.without(out, others, hooks)
         if part is None:
             break
@@ -378,7 +380,8 @@ class _ToAllRuns:
         ridge = edge_ridge(problem, options, before)
         starts = random_starts(problem, options, before, ())
         tolerance = LEAST_FALL * float(problem.costs(before[:, None])[0])
-        ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=tolerance)
+        stop = telling([problem], starts.shape[1], hooks)
+        ends = solve(problem, starts, ridge=ridge, anchor=before, stop=stop, tolerance=tolerance)
         best = min(ends, key=lambda end: end.J)
         return cls(profile, whole, trials, asked, options, problem, before, best.unit, best.J, ridge, weight)
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..hooks import Hooks
 from ..options import FitOptions
+from .amounts import telling
 from .checkpoint import EVERY, Checkpoint
 from .cmaes import Search, search
 from .least_squares import LeastSquaresResult, solve
@@ -96,10 +97,12 @@ class Seeking:
         return Optimum(problem.with_offsets(best.offsets), unit, cost, ends, ridge, found)
 
     def _from_starts(self, more: tuple[Mapping[str, float], ...], ridge: float) -> list[LeastSquaresResult]:
-        problem, stop = self.problem, self.hooks.stop
+        problem = self.problem
         starts = random_starts(problem, self.options, self.before, more)
-        if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
-            starts = np.column_stack([end.unit for end in solve(problem.from_measured(), starts, stop=stop)])
+        first = [] if problem.sigma is None else [problem.from_measured()]
+        stop = telling([*first, problem], starts.shape[1], self.hooks)
+        for nearer in first:  # far from an optimum, free initial states only lead astray
+            starts = np.column_stack([end.unit for end in solve(nearer, starts, stop=stop)])
         exact = 0.0 if all(term.known_before for term in problem.terms) else EXACT * problem.weight
         return solve(problem, starts, ridge=ridge, anchor=self.before, stop=stop, tolerance=exact)
 

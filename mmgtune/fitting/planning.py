@@ -15,6 +15,7 @@ from ..options import FitOptions, LeaveOutOptions, SweepOptions
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from ..units import in_time
+from .amounts import of_iteration
 from .box import width_words
 from .cmaes import LAMBDAS
 from .extending import held_words, settled, tune_trials
@@ -147,8 +148,7 @@ def _problem(problem: FitProblem, options: FitOptions) -> list[str]:
 
 def fit_seconds(problem: FitProblem, options: FitOptions) -> tuple[float, float]:
     """About how long a fit of the problem takes [s], from and to: what it may evaluate, timed here."""
-    extra = 0 if problem.sigma is None else 6
-    by_start = [n * (len(problem.box) + extra + 5) for n in ITERATIONS]
+    by_start = [n * of_iteration(problem) for n in ITERATIONS]
     work = [options.starts * n for n in by_start]
     if options.method == "cma-es":
         work = [n + g * sum(LAMBDAS) for n, g in zip(work, GENERATIONS, strict=True)]

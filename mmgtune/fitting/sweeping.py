@@ -332,7 +332,9 @@ def _leave_one_out(
     setting = make_setting(profile, trials, run.options)
     whole = setting.problem()
     ridge = edge_ridge(whole.with_weight(run.beside.weight.s2) if run.beside else whole, run.options, before)
-    for left_out, others in leaving_out(trials):
+    dealt = list(leaving_out(trials))
+    for k, (left_out, others) in enumerate(dealt):
+        hooks.on_progress(k, len(dealt), "trials")
         if hooks.stop():
             return float("nan"), ()
         part = setting.problem(others)

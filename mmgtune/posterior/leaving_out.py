@@ -51,6 +51,7 @@ def leave_out_with_bands(
         scores: list[WindowScore] = []
         parts = 0
         for runs, theta in zip(left.parts, left.thetas, strict=True):
+            hooks.on_progress(parts, len(left.parts), "bands")
             if hooks.stop():
                 break
             hooks.on_phase(f"bands of {', '.join(runs)}")

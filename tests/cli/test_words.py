@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 
+import mmgtune
 from mmgtune import columns
 from mmgtune.cli import at_home
 from mmgtune.effects import effect_tags
@@ -181,6 +182,54 @@ def test_progress_says_how_long_it_has_been_where_the_rest_is_not_known(monkeypa
         "measuring the gain, 2.5 min so far",
         "seed 1: 60 %, about 40 s left",
     ]
+
+
+def test_least_squares_and_parts_left_out_say_how_long_they_take(monkeypatch, capsys):
+    from mmgtune.cli.progress import Progress
+
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    progress = Progress(False, Path("run"))
+    hooks = progress.hooks()
+    hooks.on_phase("fitting all runs")
+    for done in (0, 100, 200, 300, 1100):
+        now[0] += 6.0
+        hooks.on_progress(done, 1000, "evaluations")
+        hooks.stop()
+    for k in range(3):
+        hooks.on_progress(k, 3, "parts")
+        hooks.on_phase(f"leaving out {'abc'[k]}")
+        now[0] += 6.0
+        hooks.stop()
+    assert capsys.readouterr().err.splitlines() == [
+        "fitting all runs",
+        "fitting all runs: 0 evaluations, 6 s so far",
+        "fitting all runs: 100 evaluations, about 54 s left of it",
+        "fitting all runs: 200 evaluations, about 48 s left of it",
+        "fitting all runs: 300 evaluations, about 42 s left of it",
+        "fitting all runs: more than the usual 1000 evaluations, 30 s so far",
+        "leaving out a, 0 of 3 parts done, 30 s so far",
+        "leaving out a: 0 of 3 parts done, 36 s so far",
+        "leaving out b, 1 of 3 parts done, about 12 s left",
+        "leaving out b: 1 of 3 parts done, about 6 s left",
+        "leaving out c, 2 of 3 parts done, about 6 s left",
+        "leaving out c: 2 of 3 parts done, 48 s so far",
+    ]
+
+
+def test_fits_and_leaving_out_tell_how_far_they_have_come():
+    told = []
+    hooks = mmgtune.Hooks(on_progress=lambda *of: told.append(of))
+    few = {"targets": ("hull.R_0",), "starts": 2, "a_r": 0.5}
+    mmgtune.fit("suzaku", "suzaku", mmgtune.FitOptions(method="least-squares", **few), hooks=hooks)
+    done = [done for done, _, noun in told if noun == "evaluations"]
+    assert done[0] < 10  # what it begins with
+    assert done == sorted(done)
+    assert done[-1] < told[0][1]
+    told.clear()
+    mmgtune.leave_out("suzaku", "suzaku", mmgtune.LeaveOutOptions(folds=2, **few), hooks=hooks)
+    assert {noun for _, _, noun in told} == {"evaluations", "parts"}
+    assert [(done, of) for done, of, noun in told if noun == "parts"] == [(0, 2), (1, 2)]
 
 
 def test_a_search_with_more_generations_than_usual_says_so(monkeypatch, capsys):
