@@ -25,7 +25,7 @@ from .manoeuvres import Track, manoeuvre_kind, turning_indices, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .measures import UNITS, Reference, distance_measures, reference_of
 from .model import Model
-from .motions import Motion, motions, ordered_angles, sized, track_if_whole, trial_indices
+from .motions import Motion, motions, order_of, ordered_angles, sized, track_if_whole, trial_indices
 from .networks import named_ship
 from .objective import Objective, make_objective, weights_of
 from .predictor import Predictor, as_predictor
@@ -81,6 +81,11 @@ class Measured:
     def indices(self) -> dict[str, Any]:
         """Manoeuvring indices by names with their unit; empty where there are none."""
         return trial_indices(self.trial, self.L_pp)
+
+    @property
+    def order(self) -> dict[str, Any]:
+        """What a turn or a zigzag ordered, by names of indices, also over a gap; empty of other manoeuvres."""
+        return order_of(self.trial, self.L_pp)
 
     @cached_property
     def nominal(self) -> tuple[float, float | None] | None:

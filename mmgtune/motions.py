@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -197,10 +199,15 @@ def track_of(trial: Trial) -> Track:
     longer ones, OptionError for what is no trial.
     """
     must_be_a(trial, Trial, "trial")
+    return _track(trial, SHORT_GAP)
+
+
+def _track(trial: Trial, longest: float) -> Track:
+    """The same with gaps of up to ``longest`` samples bridged."""
     motion, kept = trial.motion, slice(None)
     gaps = [stop - start for channel in motion.T for start, stop in runs_of_true(~np.isfinite(channel))]
     whole = np.flatnonzero(np.isfinite(motion).all(axis=1))
-    if gaps and max(gaps) <= SHORT_GAP and len(whole):
+    if gaps and max(gaps) <= longest and len(whole):
         kept = slice(whole[0], whole[-1] + 1)
         bridges = (bridged(trial.t[kept], channel[kept]) for channel in motion.T)
         motion = np.column_stack([channel for channel in bridges if channel is not None])
@@ -231,12 +238,26 @@ def orders_of(trials: Sequence[Trial], L_pp: float) -> dict[str, dict[str, Any]]
 
     A report tells by it what the code of a trial stands for.
     """
-    read = {trial.id: trial_indices(trial, L_pp) for trial in trials}
-    return {
-        id: {name: indices[name] for name in ORDER if indices.get(name) is not None}
-        for id, indices in read.items()
-        if indices.get("rudder_angle_deg") is not None
-    }
+    read = {trial.id: order_of(trial, L_pp) for trial in trials}
+    return {id: order for id, order in read.items() if order}
+
+
+def order_of(trial: Trial, L_pp: float) -> dict[str, Any]:
+    """What a trial ordered, by the names of ``ORDER``; empty where it shows neither a turn nor a zigzag.  L_pp [m].
+
+    The rudder tells it over a gap too, but not the check angle of a zigzag, which is None there unless it is said.
+    """
+    indices = trial_indices(trial, L_pp)
+    if track_if_whole(trial) is None:
+        with contextlib.suppress(TrialError):
+            indices = indices_of(_track(trial, math.inf), L_pp)
+        if "heading_angle_deg" in indices:
+            said = ordered_angles(trial)
+            rudder, check = (None, None) if said is None else (angle / DEG for angle in said)
+            indices |= {"rudder_angle_deg": rudder or indices["rudder_angle_deg"], "heading_angle_deg": check}
+    if indices.get("rudder_angle_deg") is None:
+        return {}
+    return {name: indices[name] for name in ORDER if name in indices}
 
 
 def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:

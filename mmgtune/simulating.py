@@ -178,6 +178,7 @@ class Simulated(Plotted, Sequence[Motion]):
             if track
             else {},
             "measured": measured,
+            **({"order": record.measured.order} if record else {}),
             "measures": record.measures if record and not motion.diverged else None,
             "unvisited": unvisited(ship, [motion]) if ship else [],
             "criteria": [criterion.to_dict() for criterion in criteria],

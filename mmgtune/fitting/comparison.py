@@ -100,6 +100,7 @@ class TrialComparison:
                 for channel, errors in self.rms.items()
             },
             "indices": self.indices,
+            "order": self.records["before"].measured.order,
         }
 
 

@@ -18,24 +18,27 @@ def legend(orders: Mapping[str, Mapping[str, Any]]) -> tuple[tuple[str, str], ..
     """For below a table: kinds of manoeuvres with their side, and the trials that are of each; nothing of others.
 
     orders  trial -> what was ordered, by the names of indices: ``rudder_angle_deg``, ``heading_angle_deg`` of a
-            zigzag, ``direction``
+            zigzag, None where it is not known, ``direction``
     """
     groups: dict[str, list[str]] = {}
     for id, order in orders.items():
         rudder, heading, side = number(order.get("rudder_angle_deg")), order.get("heading_angle_deg"), _side(order)
         if rudder is None or not side:
             continue
-        if number(heading) is None:
+        if "heading_angle_deg" not in order:
             groups.setdefault(f"turning circles, rudder to {side}", []).append(f"{clean(id)} ({_angle(rudder)}°)")
         else:
-            angles = f"{_angle(rudder)}/{_angle(float(heading))}"  # type: ignore[arg-type]
+            check = number(heading)
+            angles = f"{_angle(rudder)}°" if check is None else f"{_angle(rudder)}/{_angle(check)}"
             groups.setdefault(f"zigzags, rudder first to {side}", []).append(f"{clean(id)} ({angles})")
     return tuple((kind, listing(names, MOST)) for kind, names in groups.items())
 
 
 def of_rows(rows: Iterable[Mapping[str, Any]]) -> tuple[tuple[str, str], ...]:
-    """The same of rows of trials that have their measured indices."""
-    return legend({str(row["id"]): (row.get("indices") or {}).get("measured") or {} for row in rows})
+    """The same of rows of trials; those of older versions have only their measured indices, none where there is a
+    gap."""
+    measured = {str(row["id"]): row.get("order") or (row.get("indices") or {}).get("measured") or {} for row in rows}
+    return legend(measured)
 
 
 def sentences(orders: Mapping[str, Mapping[str, Any]]) -> tuple[str, ...]:

@@ -222,7 +222,7 @@ def _indices(record: SimulationRecord) -> Section | None:
         heads = ["trial", *(measures.with_unit(name) for name in names)]
         numeric = range(1, len(heads))
         about = list(measures.about(names))
-        about += list(codes.legend({str(run["id"]): run["measured"] or {} for run in distances}))
+        about += list(codes.legend({str(run["id"]): run.get("order") or run["measured"] or {} for run in distances}))
         blocks.append(Table("measures-table", "Distances from what was measured", tuple(heads), lines, numeric, about))
     return Section("indices", "Manoeuvring indices", tuple(blocks))
 

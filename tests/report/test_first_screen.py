@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mmgtune.checking import check, update_baseline
 from mmgtune.documents import write_json
+from mmgtune.fitting import fit, write_run
 from mmgtune.model import Model
-from mmgtune.options import PredictOptions, SimulateOptions
+from mmgtune.motions import order_of, trial_indices
+from mmgtune.options import FitOptions, PredictOptions, SimulateOptions
 from mmgtune.predicting import predict, write_prediction
 from mmgtune.profile import load_profile
 from mmgtune.provenance import made_by
@@ -103,6 +107,34 @@ def test_of_a_validation(tmp_path: Path) -> None:
     assert r"- *zigzags, rudder first to starboard*: zigzag\_10 (10/10) and zigzag\_20 (20/20)" in text
 
 
+@pytest.mark.parametrize("id", ["turn_p35", "zigzag_20"])
+def test_the_rudder_tells_over_a_gap_what_was_ordered(id: str) -> None:
+    whole, L_pp = load_trials("suzaku").trials[id], load_profile("suzaku").L_pp
+    x = np.array(whole.x)
+    x[200:260] = np.nan
+    gap = replace(whole, x=x)
+    assert trial_indices(gap, L_pp) == {}
+    found, known = order_of(gap, L_pp), order_of(whole, L_pp)
+    assert list(found) == list(known)
+    assert found["direction"] == known["direction"]
+    assert found["rudder_angle_deg"] == pytest.approx(known["rudder_angle_deg"], abs=0.5)  # one is of the name
+    if id == "zigzag_20":
+        assert (known["heading_angle_deg"], found["heading_angle_deg"]) == (pytest.approx(20.0), None)
+        said = order_of(replace(gap, manoeuvre="zigzag 20/10"), L_pp)
+        assert (said["rudder_angle_deg"], said["heading_angle_deg"]) == pytest.approx((20.0, 10.0))
+
+
+def test_a_trial_with_a_gap_stands_in_the_note_of_a_fit(tmp_path) -> None:
+    trials = load_trials("suzaku").trials
+    x = np.array(trials["turn_p35"].x)
+    x[200:260] = np.nan
+    own = [replace(trials["turn_p35"], x=x), trials["turn_p10"]]
+    options = FitOptions(a_r=0.5, method="least-squares", starts=1, targets=("hull.R_0",))
+    write_run(fit("suzaku", own, options), tmp_path)
+    text = next(path for path in render(tmp_path) if path.suffix == ".md").read_text()
+    assert r"- *turning circles, rudder to starboard*: turn\_p35 (35°) and turn\_p10 (10°)" in text
+
+
 def test_codes_of_trials() -> None:
     turn = {"rudder_angle_deg": 34.8, "direction": "starboard"}
     odd = {"rudder_angle_deg": 12.4, "direction": "port"}
@@ -111,6 +143,13 @@ def test_codes_of_trials() -> None:
         ("turning circles, rudder to starboard", "a (35°)"),
         ("turning circles, rudder to port", "b (12.4°)"),
         ("zigzags, rudder first to port", "c (20/10)"),
+    )
+    over_a_gap = {"rudder_angle_deg": 20.0, "heading_angle_deg": None, "direction": "port"}
+    assert codes.legend({"a": over_a_gap}) == (("zigzags, rudder first to port", "a (20°)"),)
+    older = {"id": "b", "indices": {"measured": odd}}
+    assert codes.of_rows([{"id": "a", "order": turn}, older, {"id": "c", "order": {}}]) == (
+        ("turning circles, rudder to starboard", "a (35°)"),
+        ("turning circles, rudder to port", "b (12.4°)"),
     )
     assert codes.sentences({"a": turn}) == ("Turning circles, rudder to starboard: a (35°).",)
 
