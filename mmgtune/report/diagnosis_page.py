@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..phrases import small
 from ..units import DIMENSIONLESS, NORMAL_95, read_as
 from . import advice, findings, measures, motion_block, svg, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
@@ -146,7 +147,8 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
     if data["unexplained"].get("changed_within"):
         note = "as far as what a sensor did is taken for noise"
     if data["unexplained"].get("best_known") and not structured:
-        note = "with what comes closest in place, on the trials it was found on"
+        note = "with what comes closest in place"
+    note += "; of the trials looked at, over their noise from sample to sample"
     cards.append(Card("Left beyond the sensors' noise", left, note=note, tone="bad" if structured else ""))
     return (*cards, Card("Misfit J, held out", shown(gain.get("J_test_before")), note=f"re-tuned, {_held_out(gain)}"))
 
@@ -564,9 +566,11 @@ def _left(data: Mapping[str, Any]) -> Block:
         return Nothing("What is left looks like the noise of the sensors.", more)
     known = number(left["share_of_noise_variance"]) or 0.0
     said = (
-        f"The error is {size}" if known >= 10.0 else f"What is left is {size} of the noise's variance beyond that noise"
+        f"The error is {size} from sample to sample"
+        if known >= 10.0
+        else f"What is left is {size} of the noise's variance beyond that noise"
     )
-    sentences = [f"{said}, and looks like something that happened."]
+    sentences = [f"On the trials looked at: {small(said)}, and looks like something that happened."]
     for pair, value in left["correlation"].items():
         sentences.append(
             f"Correlation of what {clean(pair)} say of it: {shown(value, 2)} (1: the same thing seen twice)."

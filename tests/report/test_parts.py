@@ -53,6 +53,25 @@ def test_shown(value: object, text: str) -> None:
     assert wording.shown(value) == text
 
 
+@pytest.mark.parametrize(("share", "size"), [(1e4, "100 times the noise"), (0.5, "50\u00a0%")])
+def test_an_error_over_the_noise_says_of_which_trials_and_noise(tmp_path: Path, share: float, size: str) -> None:
+    left = {"share_of_noise_variance": share, "structured": True, "correlation": {}}
+    data = {
+        "unexplained": {**left, "largest_share_by_one_quantity": {}},
+        "causes": [],
+        "gain": {"held_out": "test trials"},
+        "trial_results": [],
+    }
+    (card,) = [
+        one for one in diagnosis_page._cards(load.DiagnosisRecord(tmp_path, data, {})) if one.label.startswith("Left")
+    ]
+    assert card.value == size
+    assert card.note.endswith("; of the trials looked at, over their noise from sample to sample")
+    first = diagnosis_page._left(data).sentences[0]
+    assert first.startswith("On the trials looked at: ")
+    assert ("100 times the noise from sample to sample" in first) == (share > 1.0)
+
+
 def test_parts_of_a_run_that_jumps_are_no_windows(tmp_path: Path) -> None:
     rows = [
         {"id": id, "part_of": id.partition("@")[0], "rms": {"x": rms, "y": rms, "psi": rms}}
