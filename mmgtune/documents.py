@@ -4,11 +4,31 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from .errors import brief
 from .files import write_text
+
+
+class RepeatedKey(ValueError):
+    """An object of a JSON document says something twice."""
+
+
+def parsed(text: str | bytes) -> Any:
+    """What JSON says.  Raises ValueError where it is none, RepeatedKey where a key is written twice in one object: the
+    second would count in silence."""
+    return json.loads(text, object_pairs_hook=_once)
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
+        raise RepeatedKey(f"the key {brief(twice)} is written twice in one object")
+    return found
 
 
 def finite(value: float | None) -> float | None:

@@ -17,6 +17,7 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import Integrator
 from .components import split_name
+from .documents import RepeatedKey, parsed
 from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError, must_be_a, reason
 from .files import hold_regular, path_of
@@ -176,10 +177,12 @@ def load_particles(path: Path | str) -> Particles:
             rows_of(file.metadata, path.stat().st_size, str(path), ProfileError)
             table = file.read(use_threads=False)
         raw = (table.schema.metadata or {})[KEY]
-        facts = json.loads(raw)
+        facts = parsed(raw)
         text, known, schema = facts["profile"], facts["facts"], facts["schema"]
     except (OSError, pa.ArrowException) as error:
         raise _unusable("particles cannot be read", path, reason(error)) from error
+    except RepeatedKey as error:
+        raise _unusable("what the particles say of themselves is damaged", path, str(error)) from error
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise _unusable("the file holds no particles", path, "its metadata say of none") from error
     if schema != SCHEMA:

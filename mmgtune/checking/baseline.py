@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -11,7 +10,7 @@ from typing import Any
 
 from .. import limits
 from ..backends import Integrator
-from ..documents import finite_values, write_json
+from ..documents import finite_values, parsed, write_json
 from ..errors import OptionError, Problem, among, must_be_a, reason
 from ..files import path_of
 from ..metrics import METRICS
@@ -105,7 +104,7 @@ def read_baseline(path: Path | str) -> Baseline:
     path = Path(path)
     again = "write it anew with update_baseline=True, or take it from the repository"
     try:
-        data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
+        data = parsed(limits.text(path, limits.RECORD_BYTES, OptionError))
     except FileNotFoundError:
         fix = "write one with update_baseline=True, and commit it"
         raise OptionError(Problem("there is no baseline", str(path), looked_for(path), fix)) from None

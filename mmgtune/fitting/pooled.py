@@ -23,6 +23,7 @@ import numpy as np
 
 from .. import limits
 from ..arrays import FloatArray
+from ..documents import parsed
 from ..errors import FEW, OptionError, Problem, brief, reason
 from ..files import hold_regular
 from ..resources import must_be_name
@@ -217,7 +218,7 @@ def read_sisters(path: Path, ship: str) -> SisterClass:
     must_be_name(path, "prior", OptionError)
     file = path if path.exists() and not path.is_dir() else _chosen(path, ship)
     try:
-        document = json.loads(_text(file))
+        document = parsed(_text(file))
         if not isinstance(document, dict) or document.get("kind") != "sister-class" or document.get("schema") != SCHEMA:
             raise ValueError('it has no "kind": "sister-class" of schema 1')
         if not isinstance(document["members"], dict) or not isinstance(document["name"], str):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits
+from ..documents import parsed
 from ..errors import OptionError, Problem, reason
 from ..files import write_text
 from ..fitting import CLASSES, FEWEST, Information, SisterClass
@@ -35,7 +36,7 @@ def classes_of(out: Path, rows: Sequence[Mapping[str, Any]]) -> list[SisterClass
 def _told(path: Path) -> Information:
     """What the trials of a job say.  Raises OptionError where the file does not hold that."""
     try:
-        return Information.from_dict(json.loads(limits.text(path, limits.RECORD_BYTES, OptionError)))
+        return Information.from_dict(parsed(limits.text(path, limits.RECORD_BYTES, OptionError)))
     except (OSError, ValueError, KeyError, RecursionError) as error:
         fix = "remove the row of the job from results and run the fleet again with resume=True: the job is run anew"
         what = "the file does not hold what trials say of coefficients"

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from .. import limits
-from ..documents import write_json
+from ..documents import parsed, write_json
 from ..errors import OptionError, Problem, reason
 from ..phrases import capital
 from . import rows as result_rows
@@ -60,7 +59,7 @@ def made_before(out: Path) -> dict[str, Any]:
     """What an earlier record says of how the fleet was made.  Raises OptionError where there is none."""
     path = out / RECORD
     try:
-        document = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
+        document = parsed(limits.text(path, limits.RECORD_BYTES, OptionError))
         if not isinstance(document, dict):
             raise ValueError("it holds no table")
         return {key: document[key] for key in ("mmgtune", "created", "command", "environment", "table")}
@@ -79,7 +78,7 @@ def _listed(out: Path) -> set[str]:
 
 def _jobs_of(out: Path) -> list[dict[str, Any]]:
     try:
-        jobs = json.loads((out / JOBS).read_text(encoding="utf-8"))["jobs"]
+        jobs = parsed((out / JOBS).read_text(encoding="utf-8"))["jobs"]
         return [{**one, "key": str(one["key"])} for one in jobs]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         fix = "remove that file and run the fleet again with resume=True: it is written anew"

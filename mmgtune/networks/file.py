@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import limits
+from ..documents import parsed
 from ..errors import NetworkError, Problem, brief, must_be_a, reason
 from ..files import atomic, hold_regular, path_of
 from ..profile import parse_profile
@@ -253,7 +254,7 @@ def _header(metadata: dict[str, str], where: str) -> tuple[dict[str, Any], _Made
         raise NetworkError(Problem("the file holds no network of mmgtune", where, "its header does not say so", FIX))
     _schema(metadata, (SCHEMA, SEVERAL), where)
     try:
-        found = json.loads(metadata.get("network", ""))
+        found = parsed(metadata.get("network", ""))
     except (ValueError, RecursionError) as error:
         raise NetworkError(Problem("the header of the network cannot be read", where, reason(error), FIX)) from error
     if not isinstance(found, dict):

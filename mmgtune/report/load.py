@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import limits
 from ..arrays import FloatArray
+from ..documents import parsed
 from ..errors import OptionError, Problem, reason
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
@@ -179,7 +180,7 @@ def _read(path: Path, kind: Kind) -> dict[str, Any]:
     again = "run the fit again, or give another folder"
     try:
         text = limits.text(path, limits.RECORD_BYTES, OptionError)
-        data = json.loads(text)
+        data = parsed(text)
         if _HALF.search(text):  # no file of a report could hold half a character: a ValueError
             json.dumps(data, ensure_ascii=False).encode()
     except (OSError, ValueError, RecursionError) as error:

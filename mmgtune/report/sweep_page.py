@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from .. import limits
+from ..documents import parsed
 from ..errors import OptionError
 from . import advice, figures, misfit
 from .blocks import Card, Cell, Commands, Page, Prose, Section, Table, cells
@@ -123,7 +123,7 @@ def _off(record: SweepRecord, run: Mapping[str, Any]) -> tuple[Card, ...]:
     path = record.folder / (folder or "") / "fit.json"
     if folder is None or not path.is_file():
         return ()
-    fit = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
+    fit = parsed(limits.text(path, limits.RECORD_BYTES, OptionError))
     return cards_of_misfit({}, fit["trial_results"])
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..documents import RepeatedKey, parsed
 from ..errors import Problem, among, brief, reason
 from ..files import can_name_file
 from ..limits import FACTS_BYTES, NAME, NESTING, as_float, is_real
@@ -28,11 +28,13 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
     if problem is not None:
         return {}, [problem]
     try:
-        facts = json.loads(raw)
+        facts = parsed(raw)
         if not isinstance(facts, dict):
             raise ValueError(f"it is a {type(facts).__name__}")
         if depth(facts) > NESTING.most:
             raise ValueError(f"it is nested more than {NESTING.most} levels deep")
+    except RepeatedKey as error:
+        return {}, [Problem("the metadata says something twice", where, str(error), "leave one of the two out")]
     except (ValueError, RecursionError) as error:
         fix = 'write an object such as {"schema": 1, "ship": "...", "id": "..."}, or leave the metadata out'
         return {}, [Problem("the metadata is not a JSON object", where, reason(error), fix)]
