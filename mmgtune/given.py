@@ -94,7 +94,7 @@ def _several(given: object) -> list[Trial | IndexTrial]:
     """
     if isinstance(given, (Trial, IndexTrial)):
         given = [given]
-    parts = parts_of(given)
+    parts = None if _is_table(given) else parts_of(given)
     if parts is not None:
         parts = [trial for one in parts for trial in (load_trials(one) if _is_file(one) else (one,))]
     others = [one for one in parts or () if not isinstance(one, (Trial, IndexTrial))]
@@ -107,13 +107,22 @@ def _several(given: object) -> list[Trial | IndexTrial]:
     fix = "give a TrialSet, a Trial, a list of these, a path or a bundled name; load_trials(NAME) reads a set"
     if isinstance(given, ShipProfile):
         fix = "give the ship first, then the trials"
-    if not isinstance(given, Mapping) and hasattr(given, "keys"):
+    elif type(given).__name__.endswith("Options"):
+        fix = f"options are named where they do not stand third: options={type(given).__name__}(...)"
+    elif isinstance(given, Found) or (parts and any(isinstance(one, (ShipProfile, Found)) for one in parts)):
+        fix = "several ships stand in a list, and the trials behind it"
+    elif _is_table(given):
         fix += ", trial_of(TABLE, ID) makes a trial of a table; a table of orders is for predict(SHIP, TABLE)"
     if others and all(_is_folder(one) for one in others):
         fix = f"a set is given by itself: {brief(others[0])}; in a list stand trials and their files"
     elif others and all(isinstance(one, str) for one in others) and isinstance(given, Sequence):
         fix = f"ids are looked up in their set: [TRIALS[{others[0]!r}]], where TRIALS is load_trials(NAME)"
     raise OptionError(Problem(what, brief(given), "measured trials are wanted here", fix))
+
+
+def _is_table(given: object) -> bool:
+    """Whether something has named columns and is no dict."""
+    return not isinstance(given, Mapping) and hasattr(given, "keys")
 
 
 def _is_file(one: object) -> bool:

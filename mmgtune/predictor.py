@@ -22,7 +22,7 @@ from .given import Found, ship_of
 from .model import Model
 from .physics.quantities import State, Surroundings
 from .profile import ShipProfile
-from .trial import Trial, another_ship, surroundings
+from .trial import Trial, TrialSet, another_ship, surroundings
 
 AT_ONCE = 100_000
 """Samples times members predicted at one time, but for those of a single case; bounds the memory (5 MB of states)."""
@@ -333,7 +333,10 @@ def _no_ship(given: object) -> Problem:
         fix = f"add {', '.join(gone)}" + (f"; predict(cases) returns {RETURNED}" if "predict" in gone else "")
         return Problem(f"{kind_of(given)} is not yet a predictor: it lacks {', '.join(gone)}", brief(given), why, fix)
     why = "a ship profile, a model or a predictor is needed"
-    return Problem(f"{kind_of(given)} is no ship", brief(given), why, "load a profile with load_profile(NAME)")
+    fix = "load a profile with load_profile(NAME)"
+    if isinstance(given, (TrialSet, Trial)):
+        fix = "give the ship first, then the trials"
+    return Problem(f"{kind_of(given)} is no ship", brief(given), why, fix)
 
 
 def profile_of(predictor: Predictor) -> ShipProfile | None:

@@ -11,7 +11,7 @@ from typing import Any
 from .arrays import FloatArray
 from .bands import Pooled, pooled, pooled_by
 from .displayed import Plotted, inert
-from .errors import OptionError, Problem
+from .errors import OptionError, Problem, among, brief
 from .first_states import J_of_noise, estimated, in_words
 from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
@@ -101,6 +101,19 @@ class Validation(Plotted):
         named = ", ".join(f"{one.name} {L_MSE(one.scores):.4g}" for one in self.profiles[:4])
         more = f" and {len(self.profiles) - 4} more" if len(self.profiles) > 4 else ""
         return inert(f"Validation(on {self.trials[-60:]}, L_MSE of {named}{more})")
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a reader must know: what is odd about the trials, and what is to be said of each model, each once."""
+        return tuple(dict.fromkeys([*self.oddities, *(note for one in self.profiles for note in one.notes)]))
+
+    def __getitem__(self, name: str) -> Scored:
+        """What was scored under that name.  Raises OptionError where there is none."""
+        found = [one for one in self.profiles if one.name == name]
+        if not found:
+            known = [one.name for one in self.profiles]
+            raise OptionError(Problem(f"no model {brief(name)} was scored", "validation", **among(name, known)))
+        return found[0]
 
     @property
     def method(self) -> str:

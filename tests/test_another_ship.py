@@ -105,6 +105,7 @@ def test_trials_of_several_ships_are_refused(own):
         lambda: mmgtune.validate("suzaku", mixed),
         lambda: mmgtune.simulate("suzaku", mixed),
         lambda: mmgtune.predict("suzaku", mixed),
+        lambda: mmgtune.posterior("suzaku", mixed),
     ):
         with pytest.raises(TrialError) as caught:
             use()

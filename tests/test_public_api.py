@@ -30,6 +30,37 @@ def test_everything_listed_can_be_had_twice():
         assert callable(first)
 
 
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda of: mmgtune.fit("suzaku", of.to_frame()), "trial_of(TABLE, ID) makes a trial of a table"),
+        (lambda _: mmgtune.simulate("suzaku", mmgtune.SimulateOptions(turn=35)), "options=SimulateOptions(...)"),
+        (lambda of: mmgtune.validate(of, "suzaku"), "give the ship first, then the trials"),
+        (lambda of: mmgtune.validate("suzaku", mmgtune.simulate("suzaku", of)), "give a TrialSet, a Trial"),
+        (lambda of: mmgtune.validate("suzaku", mmgtune.load_profile("suzaku")), "give the ship first"),
+        (lambda of: mmgtune.validate("suzaku", of)["suzakku"], "did you mean 'suzaku'?"),
+    ],
+)
+def test_what_is_given_in_the_wrong_place_is_told_what_to_write(call, said):
+    with pytest.raises(mmgtune.MmgtuneError) as caught:
+        call(mmgtune.load_trials("suzaku")["turn_p35"])
+    assert said in str(caught.value)
+
+
+def test_a_fit_in_the_place_of_trials_is_told_of_lists():
+    few = mmgtune.FitOptions(a_r=0.5, method="least-squares", starts=1, targets=("hull.R_0",))
+    result = mmgtune.fit("suzaku", "suzaku", few)
+    with pytest.raises(mmgtune.MmgtuneError, match="several ships stand in a list, and the trials behind it"):
+        mmgtune.validate("suzaku", result)
+    scored = mmgtune.validate(["suzaku", result], mmgtune.load_trials("suzaku")["turn_p35"])
+    assert scored["suzaku (2)"] is scored.profiles[1]
+    assert set(scored.notes) == {note for one in scored.profiles for note in one.notes} | set(scored.oddities)
+    assert repr(mmgtune.predict(result, options=mmgtune.PredictOptions(turn=35))) == (
+        "Predicted(suzaku, 1 particle: turn_p35)"
+    )
+    assert len(repr(mmgtune.track_of(mmgtune.load_trials("suzaku")["turn_p35"]))) < 200
+
+
 def test_from_profile_to_verdict(tmp_path):
     profile = mmgtune.load_profile("suzaku")
     trials = mmgtune.load_trials("suzaku")

@@ -107,7 +107,10 @@ def summary(result: LeftOut, folder: str, report: bool = False) -> str:
             lines.append(f"{kind or 'all':<26}{of.windows:>8}{held:>12}{crps:>8}{width:>8}")
         lines.append("CRPS and width of the 90 % band: mean over the states, in their spread over the trials.")
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
-    if result.interrupted:
+    if result.interrupted and result.bands and len(result.parts) == result.n_parts:
+        banded = f"the bands of {result.bands.parts} of {result.n_parts} parts"
+        lines.append(f"Stopped after {banded}; bands are of those alone.")
+    elif result.interrupted:
         lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
     lines.append(f"{counted(len(result.parts), 'fit')} in {result.wall_s:.1f} s, simulated by {result.method}.")
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")

@@ -8,6 +8,7 @@ from typing import Any, Literal, get_type_hints
 import numpy as np
 
 from ..arrays import FloatArray, numbers_of, robust_deviation
+from ..displayed import Brief
 from ..errors import Problem, TrialError
 from ..trial.schema import FEWEST_SAMPLES
 from ..units import DEG
@@ -15,8 +16,8 @@ from ..units import DEG
 Direction = Literal["starboard", "port"]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Track:
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Track(Brief):
     """Record of one manoeuvre; every channel of shape (n_samples,), SI units.
 
     t       time, strictly increasing, need not be uniform [s]

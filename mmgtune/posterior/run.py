@@ -27,6 +27,7 @@ from ..phrases import capital, counted
 from ..profile import ShipProfile, tuned
 from ..threads import blas_on_one_thread
 from ..trial import Trial, another_ship
+from ..trial.by_hand import ship_of_all
 from .local import Mode, Windowed, find_mode, make_windowed, particles_about
 from .room import Room, make_room, tags_of
 from .sizing import Shown, Sized, own_variance, shown_by, size
@@ -162,8 +163,8 @@ def posterior(
     ship = ship_of(profile)
     if isinstance(trials, Sequence) and not isinstance(trials, str):
         chosen = list_of(trials)
-        of = next((trial.ship for trial in chosen if trial.ship), "")
-        return _drawn(ship, chosen, options, hooks, {"trials": [trial.id for trial in chosen]}, of)
+        facts = {"trials": [trial.id for trial in chosen]}
+        return _drawn(ship, chosen, options, hooks, facts, ship_of_all(chosen))
     data = trials_of(trials)
     provenance = make_provenance(ship, data, command)
     identity = identity_of(ship, data, options, provenance)

@@ -15,6 +15,7 @@ from ..bands import IndexBand, Pooled, WindowScore, covariances, fan, index_band
 from ..displayed import Plotted, inert
 from ..manoeuvres.named import BY_KEY
 from ..options import PredictOptions
+from ..phrases import counted
 from ..predictor import Predictor
 from ..profile import ShipProfile
 from ..provenance import made_by
@@ -135,7 +136,7 @@ class Predicted(Plotted):
     def __repr__(self) -> str:
         """In a line."""
         shown = ", ".join(one.id for one in self.runs[:4]) + (" ..." if len(self.runs) > 4 else "")
-        return inert(f"Predicted({self.name[-60:]}, {self.predictor.n_members} particles: {shown})")
+        return inert(f"Predicted({self.name[-60:]}, {counted(self.predictor.n_members, 'particle')}: {shown})")
 
     @property
     def level(self) -> float:

@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from mmgtune.cli.leave_out import summary
 from mmgtune.fitting import Hooks
 from mmgtune.options import LeaveOutOptions, PosteriorOptions
 from mmgtune.posterior import leave_out_with_bands, posterior
@@ -54,6 +55,8 @@ def test_stopped_and_resumed_is_the_same(whole, tmp_path):
     )
     assert stopped.interrupted
     assert stopped.bands.parts == 1 < len(whole.parts)
+    parts = len(whole.parts)
+    assert f"Stopped after the bands of 1 of {parts} parts; bands are of those alone." in summary(stopped, "run")
     made = []
     again = leave_out_with_bands(
         "suzaku", "suzaku", OPTIONS, hooks=Hooks(on_phase=made.append), folder=tmp_path, resume=True
