@@ -13,7 +13,7 @@ from .. import units
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import LogError, Problem
 from ..trial.schema import impossible
-from .dates import ORDERS, Dates, is_date, order_told
+from .dates import ORDERS, Dates, Shows, is_date, order_told
 from .mapping import TimeSource
 from .numerals import numbers_in
 from .periods import Periods
@@ -138,18 +138,17 @@ class Stamps:
         if not self.orders:
             return np.full(len(text), np.nan)
         joined = {order: np.concatenate([[self.ended.get(order, np.nan)], t]) for order, t in stamps.items()}
-        order, why = order_told(joined)
-        if not order:
+        told = order_told(joined)
+        if told.shows is Shows.NONE:
             place = f"{self.path}, line {rows[0] if len(rows) else 0}"
             asks = "is the day before the month in the dates, or behind it?"
             fix = 'say format = "dmy" or format = "mdy" in [time]'
-            raise LogError(Problem(asks, place, f"the first is '{text.iloc[0]}'; {why}", fix))
-        same = "does not matter" in why
-        if len(self.orders) > 1 and not same:
-            self.notes.append(f"dates are read as {order}: {why}")
-            self.orders = (order,)
+            raise LogError(Problem(asks, place, f"the first is '{text.iloc[0]}'; {told.words}", fix))
+        if len(self.orders) > 1 and told.shows is Shows.ONE:
+            self.notes.append(f"dates are read as {told.order}: {told.words}")
+            self.orders = (told.order,)
         self.ended |= {one: float(t[np.isfinite(t)][-1]) for one, t in stamps.items() if np.isfinite(t).any()}
-        return np.asarray(stamps[order] - self.began[order])
+        return np.asarray(stamps[told.order] - self.began[told.order])
 
     def _since(self, stamps: Any) -> FloatArray:
         if self.origin is None and stamps.notna().any():

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from enum import Enum
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -104,8 +105,28 @@ class Dates:
         return np.asarray(DAY * self.days(order) + self.seconds)
 
 
-def order_told(stamps: Mapping[str, FloatArray]) -> tuple[str, str]:
-    """Of several orders the one that time itself shows, "" where it does not, and why, in words.
+class Shows(Enum):
+    """Which order of day, month and year time shows: one of them, any, as the day never changes, or none."""
+
+    ONE = "one"
+    ANY = "any"
+    NONE = "none"
+
+
+class Told(NamedTuple):
+    """The order of day, month and year that time shows.
+
+    order  "" where it shows none
+    words  what speaks for it, for people
+    """
+
+    order: str
+    shows: Shows
+    words: str
+
+
+def order_told(stamps: Mapping[str, FloatArray]) -> Told:
+    """Of several orders the one that time itself shows.
 
     stamps  (n_rows,) seconds by order
 
@@ -116,10 +137,12 @@ def order_told(stamps: Mapping[str, FloatArray]) -> tuple[str, str]:
     best = min(spans, key=lambda order: (bool((passed[order] < -DAY / 2.0).any()), spans[order]))
     others = [order for order in spans if order != best]
     if all(spans[one] == spans[best] for one in others):
-        return best, "the day is the same throughout, so its order does not matter"
+        return Told(best, Shows.ANY, "the day is the same throughout, so its order does not matter")
     if spans[best] < 1.5 * DAY and all(spans[one] > 5.0 * DAY for one in others):
-        return best, f"read so, no step of time is longer than {spans[best]:.4g} s; else some are of months"
-    return "", f"steps of time reach {', '.join(f'{size / DAY:.3g} days as {order}' for order, size in spans.items())}"
+        said = f"read so, no step of time is longer than {spans[best]:.4g} s; else some are of months"
+        return Told(best, Shows.ONE, said)
+    reach = ", ".join(f"{size / DAY:.3g} days as {order}" for order, size in spans.items())
+    return Told("", Shows.NONE, f"steps of time reach {reach}")
 
 
 def _numbers(texts: Any) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...errors import LogError, Problem
 from ...phrases import listed
-from ..dates import ORDERS, Dates, order_told
+from ..dates import ORDERS, Dates, Shows, order_told
 from ..stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY
 from .clocks import Clock, clocks, format_named, in_order
 from .finder import MOST_COLUMNS, Finder, moves
@@ -75,11 +75,9 @@ def date_order(find: Finder, keys: dict[str, Any]) -> None:
         orders = dates.orders()
         possible &= set(orders) or possible
         if len(orders) > 1:
-            order, why = order_told({one: dates.since(one) for one in orders})
-            if order and "does not matter" not in why:
-                told.add(order)
-            elif not order:
-                told.add(MARK)
+            found = order_told({one: dates.since(one) for one in orders})
+            if found.shows is not Shows.ANY:
+                told.add(found.order or MARK)
     if len(possible) == 1:
         keys["format"] = possible.pop()
     elif len(told - {MARK}) == 1:
