@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from json import JSONDecodeError
 from types import NoneType
-from typing import Any
+from typing import Any, Self
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,12 @@ class Problem:
             lines.append(f"  fix: {self.fix}")
         return "\n".join(lines)
 
+    def at(self, where: str) -> Self:
+        """The same problem, found at another place."""
+        return replace(self, where=where)
+
     def to_dict(self) -> dict[str, str]:
-        """The same four fields, for JSON."""
+        """The four fields, for JSON."""
         return {"what": self.what, "where": self.where, "why": self.why, "fix": self.fix}
 
 

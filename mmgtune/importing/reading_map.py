@@ -115,12 +115,8 @@ def _part(
     # Lines are known of what all logs share; what is wrong only here is in this entry.
     reader = _Reader(_merged(data, own), text, path)
     made = reader.read()
-    shared = {(problem.what, problem.why) for problem in problems}
-    problems += [
-        Problem(problem.what, where, problem.why, problem.fix)
-        for problem in reader.problems
-        if (problem.what, problem.why) not in shared
-    ]
+    shared = {problem.at(where) for problem in problems}
+    problems += [here for problem in reader.problems if (here := problem.at(where)) not in shared]
     return pattern, made
 
 
@@ -156,6 +152,7 @@ class _Reader(TomlReader):
     def __init__(self, data: dict[str, Any], text: str, path: Path):
         super().__init__(data, text, str(path))
         self.path = path
+        self.no_tables: set[str] = set()
 
     def read(self) -> LogMap:
         self.unknown("", self.data, TABLES[""])
@@ -213,7 +210,8 @@ class _Reader(TomlReader):
     def table(self, name: str) -> dict[str, Any]:
         table = self.data.get(name, {})
         if not isinstance(table, dict):
-            if not any(f"'{name}' is not a table" in problem.what for problem in self.problems):
+            if name not in self.no_tables:  # which is said once, however often it is asked for
+                self.no_tables.add(name)
                 self.problem(f"'{name}' is not a table", "", name, fix=f"write [{name}]")
             return {}
         return table
