@@ -19,14 +19,13 @@ from .doubts import shifted_lever
 from .forms import form_of
 from .importer import Imported, import_logs, paths_of
 from .mapping import ALL, ASKS, PARTS, LogMap
-from .proposing.find_rest import RECOVERED
 from .proposing.finder import MOST_LOGS, Finder
 from .proposing.finding import found_in
 from .proposing.guess import Guess
 from .proposing.sampling import Sample, samples_of
 from .proposing.writing import guess_dict, table_of_guesses, toml_of_map
 from .reading_map import parse_map
-from .yaw import WANDERS
+from .yaw import WANDERS, NotFollowed
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +182,7 @@ def _tried(proposal: Proposal, finder: Finder) -> Proposal:
     """The proposal with what the import says of it; digits that cannot be recovered are left as they are."""
     found, problems = _imported(proposal)
     recovering = [name for name, guess in finder.guesses.items() if "recover" in guess.keys]
-    if problems and recovering and any("recovered" in one.what for one in problems):
+    if problems and recovering and any(isinstance(one, NotFollowed) for one in problems):
         for name in recovering:
             _leave_printed(finder, name, "no curve through its steps follows the rest of the log")
         proposal = _made(finder, proposal.logs, proposal.left)
@@ -199,10 +198,8 @@ def _tried(proposal: Proposal, finder: Finder) -> Proposal:
 
 def _leave_printed(finder: Finder, name: str, why: str) -> None:
     """Take back that a column printed with few digits is recovered."""
-    guess = finder.guesses[name]
-    keys = {key: value for key, value in guess.keys.items() if key != "recover"}
-    evidence = tuple(one.replace(RECOVERED, f", and left so: {why}") for one in guess.evidence)
-    finder.guesses[name] = replace(guess, keys=keys, evidence=evidence)
+    guess, printed = finder.as_printed[name]
+    finder.guesses[name] = replace(guess, evidence=(*guess.evidence, f"{printed}, and left so: {why}"))
 
 
 def _wander(found: Imported) -> float:

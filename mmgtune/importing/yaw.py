@@ -22,6 +22,10 @@ WANDERS = 0.1
 motion, and rounding is noise like any other."""
 
 
+class NotFollowed(Problem):
+    """The integral of a yaw rate does not follow the heading that was to be recovered from it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Integral:
     """The integral of the yaw rate, fitted on the printed heading by a constant, a bias and a lag of the rate.
@@ -95,7 +99,7 @@ def heading_recovered(record: Record, log_map: LogMap) -> Record:
     if found.missed > MISS * found.rounding:
         fix = "check unit and sign of r, or leave out recover"
         what = "the heading cannot be recovered from the yaw rate"
-        raise LogError(Problem(what, str(record.path), f"its integral misses the printed heading by {said}", fix))
+        raise LogError(NotFollowed(what, str(record.path), f"its integral misses the printed heading by {said}", fix))
     notes = [
         *record.notes,
         f"psi was recovered: r less a bias of {found.bias / DEG:.2g} deg/s, {found.lag:.2g} s earlier, integrated",

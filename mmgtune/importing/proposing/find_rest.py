@@ -17,9 +17,6 @@ from .finder import FEW_DIGITS, Finder
 from .guess import ASKED, LIKELY, MARK, Guess
 from .joined import is_whole
 
-RECOVERED = ": recovered"
-"""End of the evidence of a column whose digits are to be recovered."""
-
 
 def by_name(find: Finder) -> None:
     """What behaviour did not show and names say."""
@@ -115,8 +112,9 @@ def few_digits(find: Finder) -> None:
         if name == "psi" and (rate is None or str(rate.keys.get("positive", MARK)).startswith(MARK)):
             continue
         said = f"printed with {coarse[0][0]} digits, in steps of up to {coarse[0][1]:.3g} {guess.keys.get('unit', '')}"
+        find.as_printed[name] = guess, said
         find.guesses[name] = replace(
-            guess, keys={**guess.keys, "recover": way}, evidence=(*guess.evidence, f"{said}{RECOVERED}")
+            guess, keys={**guess.keys, "recover": way}, evidence=(*guess.evidence, f"{said}: recovered")
         )
 
 

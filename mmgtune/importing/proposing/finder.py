@@ -34,6 +34,7 @@ class Finder:
     used, numeric     columns that are something already, and those whose behaviour can be looked at
     parts             further columns of what is in several, by the first of them and by what they hold
     ddmm              columns of degrees and minutes in one number
+    as_printed        columns whose few digits are to be recovered: what was known before, and how they are printed
     looks             logs whose motion is known; unit: of time; axes: of the velocities
     readings          how well the motion fits with time in each unit, or format, that it was tried in
     tables, comments  further tables of the map, and what is said above them
@@ -58,6 +59,7 @@ class Finder:
         self.units_said = [unit_named(name, row) for name, row in zip(self.first.names, below, strict=True)]
         self.units_wrong: dict[int, str] = {}
         self.guesses: dict[str, Guess] = {}
+        self.as_printed: dict[str, tuple[Guess, str]] = {}
         self.used: set[int] = set()
         self.parts: dict[int, dict[str, int]] = {}
         self.ddmm: set[int] = set()
