@@ -5,8 +5,7 @@ Every fix names a key of the map.
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -15,7 +14,7 @@ from ..arrays import FloatArray
 from ..phrases import aboard
 from ..physics.frame import to_earth
 from ..trial import Trial
-from ..trial.finding import Finding
+from ..trial.finding import Finding, Rescale
 from ..trial.kinematics import turning, white_noise
 from ..units import DEG
 from .cutting import standing
@@ -280,15 +279,9 @@ def _rise(values: FloatArray) -> float:
     return float(np.max(means - np.minimum.accumulate(means), initial=0.0))
 
 
-def in_map(finding: Finding) -> Finding:
-    """A finding whose fix names the key of the map to change in place of an arithmetic."""
-    named = re.search(r"column '(\w+)'", finding.where)
-    if not re.match(r"(multiply|divide) ", finding.fix) or named is None:
-        return finding
-    place = "format, unit or scale in [time]" if named[1] == "t" else f"unit or scale in [columns.{named[1]}]"
-    return replace(finding, fix=f"correct {place} of the map")
-
-
-def fix_in_map(fix: str, where: str) -> str:
-    """The same of a problem's fix."""
-    return in_map(Finding("error", "", where, "", fix)).fix
+def fix_in_map(fix: str) -> str:
+    """A fix by arithmetic as the key of the map to change; any other as it is."""
+    if not isinstance(fix, Rescale):
+        return fix
+    place = "format, unit or scale in [time]" if fix.column == "t" else f"unit or scale in [columns.{fix.column}]"
+    return f"correct {place} of the map"

@@ -42,7 +42,7 @@ from .quantities import MEASURED
 from .reading_map import load_map
 from .record import Record, record_of, time_in_seconds
 from .sides import as_cells_say
-from .table import Table
+from .table import InPart, Table
 from .text import binary, read_text, start_of
 from .workbook import logs_among, outlines_of, read_workbook
 from .yaw import heading_recovered
@@ -210,7 +210,7 @@ def _parts_in(log: Path, log_map: LogMap) -> list[str]:
 
 def _of_part(problem: Problem, part: str) -> Problem:
     """A problem in a part of a log, which says where that is."""
-    return problem if f"'{part}'" in problem.where else replace(problem, where=f"{problem.where}, in '{part}'")
+    return problem if isinstance(problem.where, InPart) else problem.at(f"{problem.where}, in '{part}'")
 
 
 def _name(log_map: LogMap, log: Path) -> str:
@@ -441,7 +441,7 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
     notes = [note.replace(str(record.path), record.path.name) for note in notes]
     problems = unusable(columns, str(record.path))
     if problems:
-        raise LogError(*(replace(one, fix=fix_in_map(one.fix, one.where)) for one in problems))
+        raise LogError(*(replace(one, fix=fix_in_map(one.fix)) for one in problems))
     kept = {ATTRIBUTES.get(name, name): values for name, values in columns.items()}
     required: Any = {name: kept.pop(name) for name in ATTRIBUTES.values()}
     for name in directions(kept):

@@ -22,7 +22,7 @@ from ..trial.finding import Finding
 from ..trial.kinematics import IN_EARTH_AXES, position_misfits, turning
 from ..units import DEG, KNOT, shown_in
 from .conventions import rudder_evidence
-from .doubts import doubts, in_map
+from .doubts import doubts, fix_in_map
 from .gridding import Grid
 from .mapping import LogMap
 from .proposing.elsewhere import yaw_rate_elsewhere
@@ -43,7 +43,10 @@ def quality_of(
     columns = trial.columns
     turned = turning(columns)
     misfits = position_misfits(columns)
-    findings = [_named(in_map(one), record, log_map) for one in (*check_trial(trial), *doubts(trial, record, log_map))]
+    findings = [
+        _named(replace(one, fix=fix_in_map(one.fix)), record, log_map)
+        for one in (*check_trial(trial), *doubts(trial, record, log_map))
+    ]
     evidence = rudder_evidence(trial.t, columns)
     return {
         "id": trial.id,

@@ -33,6 +33,10 @@ MISSING = frozenset({"", "-", "--", "---", "----", "*", "**", "***", "nan", "na"
 """Texts for no value, in small letters, that need not be said in a map."""
 
 
+class InPart(str):
+    """A place in a log that names the sheet it is in."""
+
+
 @dataclass(eq=False)
 class Table:
     """Columns of a log by quantity, (n_rows,) each, in the log's own units and signs.

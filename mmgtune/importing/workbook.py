@@ -19,7 +19,7 @@ from ..phrases import listed
 from .cells import table_of
 from .mapping import LogMap
 from .numerals import number_in
-from .table import Table
+from .table import InPart, Table
 from .with_units import is_with_unit
 
 ENTRIES = 2000
@@ -69,7 +69,7 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
 
     sheet = sheet_of(path, log_map.sheet)
     rows = sheet.rows[log_map.skip :]
-    where = f"{path}, sheet '{sheet.name}', row {log_map.skip + 1}"
+    where = InPart(f"{path}, sheet '{sheet.name}', row {log_map.skip + 1}")
     if not any(rows):
         why = f"the sheet has {len(sheet.rows)} rows, of which {log_map.skip} are to be skipped"
         raise LogError(Problem("the log has no rows", where, why, "check 'sheet' and 'skip' in [log], and the file"))
@@ -99,7 +99,7 @@ def hold_results(path: Path, sheet: str, names: list[str], empty: list[str]) -> 
     for name, formula in formulas_in(path, sheet, names, empty).items():
         why = f"a cell says {formula}, and the file does not hold what comes of it"
         fix = "open it in a spreadsheet program and save it again, or save the values alone"
-        place = f"{path}, sheet '{sheet}'"
+        place = InPart(f"{path}, sheet '{sheet}'")
         raise LogError(Problem(f"column '{name}' holds formulas without results", place, why, fix))
 
 

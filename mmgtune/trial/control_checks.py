@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS, Role
 from ..units import DEG
-from .finding import Finding
+from .finding import Finding, Rescale
 from .model import Trial
 from .motion_checks import spikes
 from .schema import MAIN_INPUTS, directions
@@ -152,7 +152,7 @@ def _per_minute(trial: Trial, name: str, where: str) -> Finding | None:
         f"{n:.4g} revolutions per second at {u:.3g} m/s",
         where,
         f"the ship makes only {u / n:.2g} m with each; these are probably per minute",
-        f"divide '{name}' by 60",
+        Rescale(f"divide '{name}' by 60", name),
     )
 
 
@@ -161,7 +161,8 @@ def _thruster_per_minute(trial: Trial, name: str, where: str) -> Finding | None:
     if n <= FASTEST_THRUSTER:
         return None
     why = "no thruster turns as fast; these are probably per minute"
-    return Finding("warning", f"up to {n:.4g} revolutions per second", where, why, f"divide '{name}' by 60")
+    fix = Rescale(f"divide '{name}' by 60", name)
+    return Finding("warning", f"up to {n:.4g} revolutions per second", where, why, fix)
 
 
 CHECKS: dict[Role, tuple[Callable[[Trial, str, str], Finding | None], ...]] = {
@@ -184,7 +185,7 @@ def _directions(trial: Trial, where: str) -> list[Finding]:
                     f"'{name}' is up to {largest:.3g} rad",
                     f"{where}, column '{name}'",
                     "a direction beyond two full turns is probably in degrees",
-                    "multiply it by pi/180",
+                    Rescale("multiply it by pi/180", name),
                 )
             )
     return found

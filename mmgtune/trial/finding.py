@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Self
 
 SEVERITIES = ("error", "warning", "note")
 """Worst first."""
+
+
+class Rescale(str):
+    """A fix by arithmetic, of a column in another unit or at another scale, which a map of the log can say instead."""
+
+    column: str
+
+    def __new__(cls, words: str, column: str = "") -> Self:
+        made = super().__new__(cls, words)
+        made.column = column
+        return made
 
 
 @dataclass(frozen=True)

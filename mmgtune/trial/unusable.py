@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, closest
+from .finding import Rescale
 from .kinematics import FITS, IN_DEGREES, TIMES, position_misfits, time_unit, turning
 from .raw_logs import import_commands
 from .schema import (
@@ -220,7 +221,7 @@ def _rudder(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
                     f"{where}, column '{name}'",
                     f"a rudder beyond {LARGEST_RUDDER} rad is not physical; "
                     + ("only some samples are" if few else "the column is probably in degrees"),
-                    "remove the wrong samples" if few else "multiply it by pi/180",
+                    "remove the wrong samples" if few else Rescale("multiply it by pi/180", name),
                 )
             )
     return problems
@@ -247,7 +248,7 @@ def _other_time(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
     factor = TIMES[unit]
     why = f"heading and positions change {factor:.3g} times as much in a second as 'r', 'u' and 'v' say"
     fix = f"multiply 't' by {factor:g}" if factor > 1.0 else f"divide 't' by {1.0 / factor:g}"
-    return [Problem(f"'t' is in {unit}, not s", f"{where}, column 't'", why, fix)]
+    return [Problem(f"'t' is in {unit}, not s", f"{where}, column 't'", why, Rescale(fix, "t"))]
 
 
 def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
@@ -261,7 +262,7 @@ def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
             ratio = turned.ratio if column == "psi" else 1.0 / turned.ratio
             why = f"it turns {ratio:.3g} times as far as the other of 'psi' and 'r' says"
             if column == "r" and ratio > PER_MINUTE:
-                fix = "divide 'r' by 60"
+                fix = Rescale("divide 'r' by 60", "r")
                 return [Problem("'r' is in rad/min, not rad/s", f"{where}, column 'r'", why, fix)]
             return [_in_degrees(column, where, why)]
     psi = columns["psi"][np.isfinite(columns["psi"])]
@@ -281,7 +282,7 @@ def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
 def _in_degrees(column: str, where: str, why: str) -> Problem:
     unit = "degrees" if column == "psi" else "degrees per second"
     what = f"'{column}' is in {unit}, not {COLUMNS[column].unit}"
-    return Problem(what, f"{where}, column '{column}'", why, f"multiply '{column}' by pi/180")
+    return Problem(what, f"{where}, column '{column}'", why, Rescale(f"multiply '{column}' by pi/180", column))
 
 
 def _unit(name: str) -> str:
