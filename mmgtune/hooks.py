@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Self
 
 from .errors import OptionError, Problem, brief
 
@@ -21,6 +21,17 @@ _TAKES = {
     "stop": ": False",
 }
 """What each function of hooks takes, and a body."""
+
+
+class Phase(str):
+    """Words for a new part of the work; ``look`` counts the looks for causes in a diagnosis, 0 in any other part."""
+
+    look: int
+
+    def __new__(cls, words: str, look: int = 0) -> Self:
+        made = super().__new__(cls, words)
+        made.look = look
+        return made
 
 
 @dataclass(frozen=True)

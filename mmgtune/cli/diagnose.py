@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import OptionError, Problem, among
+from ..hooks import Phase
 from ..options import DiagnoseOptions, in_flags
 from ..units import NORMAL_95, in_time
 from . import common as c
@@ -33,7 +34,7 @@ class Left:
     def __init__(self, seconds: tuple[float, float], most: int):
         self.seconds, self.most = seconds, most
         self.began = time.monotonic()
-        self.looks: list[tuple[str, float]] = []
+        self.looks: list[tuple[int, float]] = []
 
     def words(self, phase: str) -> str:
         """While it looks: before the first look is over what was reckoned, then what as many looks would take.
@@ -41,10 +42,11 @@ class Left:
         What follows the looks is not in these.  Where it takes longer than was reckoned, that is said.
         """
         now = time.monotonic()
-        if not phase.startswith("looking for"):
+        look = phase.look if isinstance(phase, Phase) else 0
+        if not look:
             return ""
-        if not self.looks or self.looks[-1][0] != phase:
-            self.looks.append((phase, now))
+        if not self.looks or self.looks[-1][0] != look:
+            self.looks.append((look, now))
         done = len(self.looks) - 1
         if not done:
             low, high = (seconds - (now - self.began) for seconds in self.seconds)

@@ -16,6 +16,7 @@ from ..arrays import FloatArray
 from ..backends import Integrator
 from ..fitting.box import base_of
 from ..fitting.lost import hold_simulated
+from ..hooks import Phase
 from ..trial import Held
 from . import noise as noises
 from .base_fit import PRECISE, base_fit, unnoticed
@@ -128,7 +129,8 @@ def search(
         found.more = len(found.causes) == TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
         if found.more:
             break
-        say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
+        number = len(found.causes) + 1
+        say(Phase("looking for a cause" if number == 1 else f"looking for cause {number}", look=number))
         try:
             step = look(bench, found.final, left, first=not found.steps)
         except Stopped:

@@ -26,7 +26,7 @@ LEAST_PART = 0.02
 class Undetermined(NamedTuple):
     """Why a target has no value of its own: "traded" against others, or "weak", less known than its box is wide."""
 
-    why: Literal["traded", "weak"]
+    kind: Literal["traded", "weak"]
     words: str
 
 
@@ -101,7 +101,7 @@ class Identifiability(Brief):
                 {"expression": c.expression, "value": c.value, "stderr": c.stderr} for c in self.combinations
             ],
             "undetermined": {name: of.words for name, of in self.undetermined.items()},
-            "undetermined_why": {name: of.why for name, of in self.undetermined.items()},
+            "undetermined_why": {name: of.kind for name, of in self.undetermined.items()},
             "autocorrelation": self.autocorrelation,
             **({} if self.from_data is None else {"from_data": self.from_data.tolist()}),
             "sentences": list(self.sentences),
@@ -289,7 +289,7 @@ def _sentences(problem: FitProblem, result: Identifiability, active: BoolArray) 
         sentences = [_decided(problem, result.from_data)]
     if problem.n_residuals:  # a few stated numbers leave more directions open than anybody reads
         sentences += [direction.sentence for direction in result.null_directions]
-    weak = [name for name, of in result.undetermined.items() if of.why == "weak"]
+    weak = [name for name, of in result.undetermined.items() if of.kind == "weak"]
     if weak:
         sentences.append(f"Not determined by these trials within their box: {', '.join(weak)}.")
     held = [name for name, on in zip(result.names, active, strict=True) if on]

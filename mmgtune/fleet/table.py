@@ -165,8 +165,7 @@ class _Reader(TomlReader):
             return options_of(command, {key: value for key, value in given.items() if key in of.__dataclass_fields__})
         except OptionError as error:
             for one in error.problems:
-                key = one.where.partition("=")[0]
-                self.problem(one.what, "options", key, one.why, one.fix)
+                self.problem(one.what, "options", one.where, one.why, one.fix)
             return None
 
 

@@ -35,6 +35,7 @@ from .wording import (
     short,
     shown,
     span,
+    within_noise,
 )
 
 _WORDS = {
@@ -562,7 +563,7 @@ def _left(data: Mapping[str, Any]) -> Block:
     left = data["unexplained"]
     size = beyond_noise(left["share_of_noise_variance"])
     if not left["structured"]:
-        more = f"Its variance beyond theirs: {size}." if size != "none" else ""
+        more = "" if within_noise(left["share_of_noise_variance"]) else f"Its variance beyond theirs: {size}."
         return Nothing("What is left looks like the noise of the sensors.", more)
     known = number(left["share_of_noise_variance"]) or 0.0
     said = (

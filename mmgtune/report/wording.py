@@ -17,6 +17,8 @@ from ..units import DEG, shown_in
 MINUS = "\u2212"
 NONE = "\u2013"
 UNIT_PERCENT = "\u00a0%"
+LITTLE = 0.02
+"""Variance over that of the noise up to which none is beyond it."""
 LARGE = 10.0
 """Variance over that of the noise from which people think in multiples of the noise."""
 _MARKUP = re.compile(r"[<>&]")
@@ -184,12 +186,18 @@ def span(low: Any, high: Any) -> str:
     return f"{first} or more" if first == share(1.0) else f"{first}, either end"
 
 
+def within_noise(value: Any) -> bool:
+    """Whether a variance beyond that of the noise, as a share of it, is known and too little to be worth a number."""
+    size = number(value)
+    return size is not None and size < LITTLE
+
+
 def beyond_noise(value: Any) -> str:
     """Variance beyond that of the noise, as a share of it; where large, how many times the noise the error is."""
     size = number(value)
     if size is None:
         return NONE
-    if size < 0.02:
+    if within_noise(size):
         return "none"
     if size < LARGE:
         return f"{100.0 * size:.0f}\u00a0%"

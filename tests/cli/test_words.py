@@ -15,6 +15,7 @@ import mmgtune
 from mmgtune import columns
 from mmgtune.cli import at_home
 from mmgtune.effects import effect_tags
+from mmgtune.hooks import Phase
 from mmgtune.units import in_time
 from tests.command import run
 
@@ -120,14 +121,14 @@ def test_how_long_a_diagnosis_may_still_take(monkeypatch):
     left = Left((30.0, 120.0), most=4)
     assert left.words("re-tuning the model without any cause") == ""
     now[0] = 110.0
-    assert left.words("looking for a cause") == "about 20 s to 1.8 min left"
+    assert left.words(Phase("looking for a cause", look=1)) == "about 20 s to 1.8 min left"
     now[0] = 150.0
-    assert left.words("looking for a cause") == "up to 70 s left"
+    assert left.words(Phase("looking for a cause", look=1)) == "up to 70 s left"
     now[0] = 170.0  # the first look took a minute; three more may follow
-    assert left.words("looking for cause 2") == "up to 3 min more of looking"
+    assert left.words(Phase("looking for cause 2", look=2)) == "up to 3 min more of looking"
     assert left.words("comparing the causes with their rivals") == ""
     now[0] = 400.0  # it said "up to 1 s left" from then on
-    assert left.words("looking for cause 2") == "longer than was reckoned, 5 min so far"
+    assert left.words(Phase("looking for cause 2", look=2)) == "longer than was reckoned, 5 min so far"
 
 
 def test_a_first_look_that_takes_longer_than_reckoned(monkeypatch):
@@ -136,11 +137,11 @@ def test_a_first_look_that_takes_longer_than_reckoned(monkeypatch):
     now = [0.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
     left = Left((30.0, 120.0), most=4)
-    assert left.words("looking for a cause") == "about 30 s to 2 min left"
+    assert left.words(Phase("looking for a cause", look=1)) == "about 30 s to 2 min left"
     now[0] = 119.0
-    assert left.words("looking for a cause") == "up to 1 s left"
+    assert left.words(Phase("looking for a cause", look=1)) == "up to 1 s left"
     now[0] = 240.0
-    assert left.words("looking for a cause") == "longer than was reckoned, 4 min so far"
+    assert left.words(Phase("looking for a cause", look=1)) == "longer than was reckoned, 4 min so far"
 
 
 def test_the_time_left_is_that_of_the_measured_pace(monkeypatch):

@@ -66,7 +66,7 @@ def test_holding_one_member_removes_the_direction(suzaku, noisy):
     unit = problem.box.to_unit([TRUTH[name] for name in problem.box.names])
     found = analyse(problem, unit, np.zeros(11, dtype=bool))
     assert found.null_directions == ()
-    assert not TRADED & {name for name, of in found.undetermined.items() if of.why == "traded"}
+    assert not TRADED & {name for name, of in found.undetermined.items() if of.kind == "traded"}
 
 
 def test_identifiable_option_holds_one_member(suzaku, noisy):
