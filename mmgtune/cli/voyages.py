@@ -150,6 +150,8 @@ def _compared(one: dict[str, Any], anew: str) -> str:
 
 
 def _left_out(found: dict[str, Any]) -> str:
+    from ..trial.voyage_windows import Unused
+
     rows = sum(log["rows_read"] for log in found["logs"])
     left: dict[str, int] = {}
     for log in found["logs"]:
@@ -157,7 +159,7 @@ def _left_out(found: dict[str, Any]) -> str:
             left[reason] = left.get(reason, 0) + count
     resting = sum(log["windows_at_rest"] for log in found["logs"])
     parts = [
-        f"{count} with {reason}" if reason != "too short" else f"{count} in pieces {reason}"
+        f"{count} in pieces {reason}" if reason == Unused.TOO_SHORT else f"{count} with {reason}"
         for reason, count in left.items()
         if count
     ]

@@ -10,12 +10,17 @@ from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..inputs import INPUTS
 from ..physics.frame import to_ship
-from ..trial.kinematics import FITS, IN_EARTH_AXES, position_misfits, turning
+from ..trial.kinematics import FITS, Reading, position_misfits, turning
 from ..units import DEG
 from .mapping import LogMap
 from .motion import moved
 
-TO_PORT = "with v positive to port"
+AXES = {
+    Reading.AS_ASKED: "ship axes, v to starboard",
+    Reading.TO_PORT: "ship axes, v to port",
+    Reading.IN_EARTH_AXES: "earth axes",
+}
+"""Readings of velocities that a map may leave open, in words."""
 CLEAR = 4.0
 """How many times worse every other reading must fit."""
 FEWEST_OVER = 50
@@ -197,13 +202,13 @@ def _axes(
     tried = dict(columns)
     moved(tried, log_map, point)
     misfits = position_misfits({name: tried[name] for name in ("x", "y", "psi", "u", "v")} | {"t": t})
-    readings = {"ship axes, v to starboard": misfits.get(""), "ship axes, v to port": misfits.get(TO_PORT)}
+    open_to = {Reading.AS_ASKED}
+    if stated is None:
+        open_to.add(Reading.TO_PORT)
     if log_map.axes is None:
-        readings["earth axes"] = misfits.get(IN_EARTH_AXES)
-    if stated is not None:
-        readings.pop("ship axes, v to port")
-    known = sorted((miss, name) for name, miss in readings.items() if miss is not None)
-    shown = ", ".join(f"{name}: {100.0 * miss:.1f} %" for miss, name in known)
+        open_to.add(Reading.IN_EARTH_AXES)
+    known = sorted((miss, AXES[reading], reading) for reading, miss in misfits.items() if reading in open_to)
+    shown = ", ".join(f"{words}: {100.0 * miss:.1f} %" for miss, words, _ in known)
     if not known or known[0][0] > FITS or (len(known) > 1 and known[1][0] < CLEAR * known[0][0]):
         asks = (
             "are u and v in ship axes or in earth axes?"
@@ -219,12 +224,12 @@ def _axes(
             )
         )
         return []
-    best = known[0][1]
-    if best == "earth axes":
+    _, words, best = known[0]
+    if best is Reading.IN_EARTH_AXES:
         columns["u"], columns["v"] = to_ship(columns["psi"], columns["u"], columns["v"])
-    elif best.endswith("port"):
+    elif best is Reading.TO_PORT:
         columns["v"] = -columns["v"]
     return [
-        f"velocities: {best}, as the positions show (misses of the distance run: {shown})",
+        f"velocities: {words}, as the positions show (misses of the distance run: {shown})",
         *moved(columns, log_map, point),
     ]

@@ -19,7 +19,7 @@ from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
 from ..trial.control_checks import fastest_change, looks_ordered
 from ..trial.finding import Finding
-from ..trial.kinematics import IN_EARTH_AXES, position_misfits, turning
+from ..trial.kinematics import Reading, position_misfits, turning
 from ..units import DEG, KNOT, shown_in
 from .conventions import rudder_evidence
 from .doubts import doubts, fix_in_map
@@ -70,8 +70,8 @@ def quality_of(
             "recovered": _recovered(record),
         },
         "positions": {
-            "ship_axes": _or_none(misfits.get("")),
-            "earth_axes": _or_none(misfits.get(IN_EARTH_AXES)),
+            "ship_axes": _or_none(misfits.get(Reading.AS_ASKED)),
+            "earth_axes": _or_none(misfits.get(Reading.IN_EARTH_AXES)),
             **_residuals(trial, record, began, log_map),
         },
         "rudder": {

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum, auto
 
 import numpy as np
 
@@ -15,14 +16,38 @@ from ..arrays import BoolArray, FloatArray, robust_deviation
 from ..physics.frame import to_earth
 from ..units import DEG, KNOT
 
-IN_EARTH_AXES = "in earth axes, u north and v east"
-IN_DEGREES = "with the heading in degrees"
-TO_PORT = "with v positive to port"
-SWAPPED = "with x east and y north"
-IN_KNOTS = "with velocities in knots"
-NOT_KNOTS = "with velocities that were in m/s before they were taken for knots"
-TO_WEST = "with y positive west"
-TWICE = "with a heading that was in radians before it was taken for degrees"
+
+class Reading(Enum):
+    """A way to read positions, heading and velocities: as trials are to have them, or as a log may."""
+
+    AS_ASKED = auto()
+    IN_EARTH_AXES = auto()
+    TO_PORT = auto()
+    IN_DEGREES = auto()
+    SWAPPED = auto()
+    IN_KNOTS = auto()
+    NOT_KNOTS = auto()
+    TO_WEST = auto()
+    TWICE = auto()
+
+    @property
+    def words(self) -> str:
+        """For people, behind "if read"."""
+        return _WORDS[self]
+
+
+_WORDS = {
+    Reading.AS_ASKED: "in ship axes, in SI units",
+    Reading.IN_EARTH_AXES: "in earth axes, u north and v east",
+    Reading.TO_PORT: "with v positive to port",
+    Reading.IN_DEGREES: "with the heading in degrees",
+    Reading.SWAPPED: "with x east and y north",
+    Reading.IN_KNOTS: "with velocities in knots",
+    Reading.NOT_KNOTS: "with velocities that were in m/s before they were taken for knots",
+    Reading.TO_WEST: "with y positive west",
+    Reading.TWICE: "with a heading that was in radians before it was taken for degrees",
+}
+
 FITS = 0.1
 """Share of the distance run by which velocities may miss the positions."""
 
@@ -138,10 +163,10 @@ def _ways(columns: Mapping[str, FloatArray], longer: int = 1) -> _Ways | None:
     return _Ways(moved, psi, u, v, dt, usable, window)
 
 
-def position_misfits(columns: Mapping[str, FloatArray], longer: int = 1) -> dict[str, float]:
+def position_misfits(columns: Mapping[str, FloatArray], longer: int = 1) -> dict[Reading, float]:
     """How badly the velocities explain the positions, by the way they are read: 0 perfectly, 1 not at all.
 
-    The entry "" is the reading the format asks for.  A misfit is the median over windows of the distance between
+    A misfit is the median over windows of the distance between
     measured and integrated displacement, over the displacement; windows are long enough for white noise not to matter,
     or so many times ``longer``.
     Empty where the ship hardly moves or nothing can be compared.  Needs t, x, y, psi, u and v, (n_samples,) each.
@@ -151,17 +176,17 @@ def position_misfits(columns: Mapping[str, FloatArray], longer: int = 1) -> dict
         return {}
     psi, v = ways.psi, ways.v
     readings = {
-        "": ways.rotated(psi, v),
-        IN_EARTH_AXES: np.column_stack([ways.u, v]) * ways.dt[:, None],
-        TO_PORT: ways.rotated(psi, -v),
-        IN_DEGREES: ways.rotated(psi * DEG, v),
-        SWAPPED: ways.rotated(psi, v)[:, ::-1],
-        IN_KNOTS: ways.rotated(psi, v, KNOT),
-        NOT_KNOTS: ways.rotated(psi, v, 1.0 / KNOT),
-        TO_WEST: ways.rotated(psi, v) * [1.0, -1.0],
-        TWICE: ways.rotated(psi / DEG, v),
+        Reading.AS_ASKED: ways.rotated(psi, v),
+        Reading.IN_EARTH_AXES: np.column_stack([ways.u, v]) * ways.dt[:, None],
+        Reading.TO_PORT: ways.rotated(psi, -v),
+        Reading.IN_DEGREES: ways.rotated(psi * DEG, v),
+        Reading.SWAPPED: ways.rotated(psi, v)[:, ::-1],
+        Reading.IN_KNOTS: ways.rotated(psi, v, KNOT),
+        Reading.NOT_KNOTS: ways.rotated(psi, v, 1.0 / KNOT),
+        Reading.TO_WEST: ways.rotated(psi, v) * [1.0, -1.0],
+        Reading.TWICE: ways.rotated(psi / DEG, v),
     }
-    return {name: ways.misfit(steps) for name, steps in readings.items()}
+    return {reading: ways.misfit(steps) for reading, steps in readings.items()}
 
 
 OFF = 0.05

@@ -10,20 +10,7 @@ from ..inputs import INPUTS
 from ..phrases import aboard, counted
 from ..units import DEG
 from .finding import Finding
-from .kinematics import (
-    FITS,
-    IN_DEGREES,
-    IN_EARTH_AXES,
-    IN_KNOTS,
-    NOT_KNOTS,
-    SWAPPED,
-    TO_PORT,
-    TO_WEST,
-    TWICE,
-    lever_of,
-    position_misfits,
-    turning,
-)
+from .kinematics import FITS, Reading, lever_of, position_misfits, turning
 from .model import Trial
 from .schema import LARGEST_YAW_RATE, MOTION
 
@@ -40,13 +27,13 @@ USUAL = (
 """What to do where no one reading of velocities and positions makes them agree."""
 
 MENDED = {
-    IN_EARTH_AXES: "turn 'u' and 'v' into ship axes: u cos(psi) + v sin(psi) and v cos(psi) - u sin(psi)",
-    TO_PORT: "change the sign of 'v': positive to starboard",
-    SWAPPED: "swap 'x' and 'y': x is north and y is east",
-    IN_KNOTS: "multiply 'u' and 'v' by 0.5144: they are to be in m/s",
-    NOT_KNOTS: "divide 'u' and 'v' by 0.5144: they are in m/s without it",
-    TO_WEST: "change the sign of 'y': positive east",
-    TWICE: "multiply 'psi' by 180/pi: it is in radians then",
+    Reading.IN_EARTH_AXES: "turn 'u' and 'v' into ship axes: u cos(psi) + v sin(psi) and v cos(psi) - u sin(psi)",
+    Reading.TO_PORT: "change the sign of 'v': positive to starboard",
+    Reading.SWAPPED: "swap 'x' and 'y': x is north and y is east",
+    Reading.IN_KNOTS: "multiply 'u' and 'v' by 0.5144: they are to be in m/s",
+    Reading.NOT_KNOTS: "divide 'u' and 'v' by 0.5144: they are in m/s without it",
+    Reading.TO_WEST: "change the sign of 'y': positive east",
+    Reading.TWICE: "multiply 'psi' by 180/pi: it is in radians then",
 }
 """What makes of a reading that fits the one that is asked for."""
 
@@ -205,7 +192,7 @@ def _yaw(trial: Trial, where: str) -> list[Finding]:
         ]
     yaw = np.abs(trial.r[np.isfinite(trial.r)])
     misfits = position_misfits(trial.columns)
-    if np.percentile(yaw, 95.0) > LARGEST_YAW_RATE and misfits.get("", 1.0) > FITS:
+    if np.percentile(yaw, 95.0) > LARGEST_YAW_RATE and misfits.get(Reading.AS_ASKED, 1.0) > FITS:
         return [
             Finding(
                 "warning",
@@ -220,24 +207,24 @@ def _yaw(trial: Trial, where: str) -> list[Finding]:
 
 def _positions(trial: Trial, where: str) -> list[Finding]:
     misfits = position_misfits(trial.columns)
-    asked = misfits.pop("", 0.0)
+    asked = misfits.pop(Reading.AS_ASKED, 0.0)
     if asked <= FITS:
         return []
     # Small angles in degrees read as earth axes do; headings surely in degrees make a trial unusable.
-    del misfits[IN_DEGREES]
+    del misfits[Reading.IN_DEGREES]
     enough = min(FITS, 0.5 * asked)
-    fitting = [(miss, f"if read {name}", MENDED[name]) for name, miss in misfits.items() if miss < enough]
+    fitting = [(miss, f"if read {one.words}", MENDED[one]) for one, miss in misfits.items() if miss < enough]
     lever = lever_of(trial.columns)
     if lever is not None and lever.likely and FREER * lever.misfit < enough:
         place = f"if they are of a point about {aboard(lever.x, lever.y, 2)} of midship"
         fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
     fitting.sort()
-    if not fitting and position_misfits(trial.columns, WANDER).get("", 0.0) <= FITS:
+    if not fitting and position_misfits(trial.columns, WANDER).get(Reading.AS_ASKED, 0.0) <= FITS:
         return []
     fits = "they fit " + ", or ".join(words for _, words, _ in fitting)
     fix = "; or ".join(fix for _, _, fix in fitting)
     if not fitting:
-        fits, fix = f"nor do they fit if read in earth axes ({100 * misfits[IN_EARTH_AXES]:.0f} %)", USUAL
+        fits, fix = f"nor do they fit if read in earth axes ({100 * misfits[Reading.IN_EARTH_AXES]:.0f} %)", USUAL
     return [
         Finding(
             "warning",

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .finding import Rescale
-from .kinematics import FITS, IN_DEGREES, TIMES, position_misfits, time_unit, turning
+from .kinematics import FITS, TIMES, Reading, position_misfits, time_unit, turning
 from .raw_logs import import_commands
 from .schema import (
     COLUMNS,
@@ -270,8 +270,8 @@ def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
         return []
     misfits = position_misfits(columns)
     # Only so: angles of a few radians read in degrees are nearly no angles, as if velocities were in earth axes.
-    others = [misfit for name, misfit in misfits.items() if name != IN_DEGREES]
-    if not misfits or misfits[IN_DEGREES] > FITS or min(others) < 3.0 * FITS:
+    others = [misfit for reading, misfit in misfits.items() if reading is not Reading.IN_DEGREES]
+    if not misfits or misfits[Reading.IN_DEGREES] > FITS or min(others) < 3.0 * FITS:
         return []
     problems = [_in_degrees("psi", where, "read in degrees, and only so, it leads u and v along the positions")]
     if "r" in columns and turned.span > 6.0 and turned.miss < 0.15 * turned.span:

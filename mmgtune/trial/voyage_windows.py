@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -19,14 +20,19 @@ from .schema import MAIN_INPUTS, MOTION
 from .unusable import in_degrees
 from .voyage import Block, Voyage
 
-LEFT_OUT = ("unknown inputs", "incomplete motion", "too short")
-"""Why rows are in no window."""
-
 LEAST = 0.5
 """Share of the length that a window must last; a distance measure grows with time, and short ones flatter."""
 
 AT_REST = 0.02
 """Froude number U / sqrt(g L_pp) below which the ship is at rest: relative distances say nothing there."""
+
+
+class Unused(StrEnum):
+    """Why rows are in no window, as records of voyages name it."""
+
+    UNKNOWN_INPUTS = "unknown inputs"
+    INCOMPLETE_MOTION = "incomplete motion"
+    TOO_SHORT = "too short"
 
 
 class Window(NamedTuple):
@@ -53,7 +59,7 @@ class Cutting:
     windows: int = 0
     used: int = 0
     gaps: int = 0
-    left_out: dict[str, int] = field(default_factory=lambda: dict.fromkeys(LEFT_OUT, 0))
+    left_out: dict[Unused, int] = field(default_factory=lambda: dict.fromkeys(Unused, 0))
     shared: bool = False
 
 
@@ -155,8 +161,9 @@ def _count(told: Cutting, covered: BoolArray, known: BoolArray, complete: BoolAr
     told.used += int(covered.sum())
     told.gaps += int((covered & ~complete).sum())
     left = ~covered
-    for reason, rows in zip(LEFT_OUT, (left & ~known, left & known & ~complete, left & complete), strict=True):
-        told.left_out[reason] += int(rows.sum())
+    told.left_out[Unused.UNKNOWN_INPUTS] += int((left & ~known).sum())
+    told.left_out[Unused.INCOMPLETE_MOTION] += int((left & known & ~complete).sum())
+    told.left_out[Unused.TOO_SHORT] += int((left & complete).sum())
 
 
 def _window(voyage: Voyage, block: Block, first: int, last: int) -> Window:

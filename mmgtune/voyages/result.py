@@ -66,7 +66,7 @@ class Log:
             "rows_read": self.counted.rows,
             "rows_used": self.counted.used,
             "rows_with_gaps": self.counted.gaps,
-            "rows_left_out": dict(self.counted.left_out),
+            "rows_left_out": {str(reason): rows for reason, rows in self.counted.left_out.items()},
             "windows": self.windows,
             "windows_at_rest": self.at_rest,
             "complete": self.complete,

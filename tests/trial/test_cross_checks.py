@@ -15,7 +15,7 @@ from mmgtune import DiagnoseOptions, FitOptions, LeaveOutOptions, diagnose, fit,
 from mmgtune.importing import import_logs, load_map
 from mmgtune.profile import load_profile
 from mmgtune.trial import Trial, check_trial, check_trials, load_trials, oddities
-from mmgtune.trial.kinematics import FITS, position_misfits
+from mmgtune.trial.kinematics import FITS, Reading, position_misfits
 from mmgtune.trial.set_checks import odd_in_words
 
 from .made import DEG, made, said
@@ -98,7 +98,7 @@ def test_positions_that_wander_do_not_contradict_velocities() -> None:
     for k in range(1, trial.n_samples):
         wander[:, k] = np.exp(-dt / 20.0) * wander[:, k - 1] + 4.0 * np.sqrt(2.0 * dt / 20.0) * rng.standard_normal(2)
     off = replace(trial, x=trial.x + wander[0], y=trial.y + wander[1])
-    assert position_misfits(off.columns)[""] > FITS
+    assert position_misfits(off.columns)[Reading.AS_ASKED] > FITS
     assert warnings_of(off) == []
     assert any("do not integrate to the positions" in one for one in warnings_of(replace(off, u=1.3 * off.u)))
 
