@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
+from ..components.speeds import fastest_speed, too_fast
 from ..errors import OptionError, Problem
-from ..physics.constants import GRAVITY
 from ..profile import Approach
-from ..profile.possible import FASTEST_SHAFT, FROUDE
+from ..profile.possible import FASTEST_SHAFT
 from ..units import KNOT
 
 FASTER = 5.0
@@ -22,10 +20,9 @@ def possible_approach(
     own     approach of the profile, None where there is none
     option  that ordered the revolutions
     """
-    fastest = FROUDE * math.sqrt(GRAVITY * L_pp)
-    if speed is not None and not speed <= fastest:
-        why = f"a Froude number of {speed / fastest:.2g} with {L_pp:.4g} m between perpendiculars; ships stay below 0.5"
-        fix = f"give a speed below {0.5 * fastest / KNOT:.3g} kn, with its unit"
+    if speed is not None and (froude := too_fast(speed, L_pp)) is not None:
+        why = f"a Froude number of {froude:.2g} with {L_pp:.4g} m between perpendiculars; ships stay below 0.5"
+        fix = f"give a speed below {0.5 * fastest_speed(L_pp) / KNOT:.3g} kn, with its unit"
         raise OptionError(Problem(f"the approach speed is {speed / KNOT:.4g} kn", "speed", why, fix))
     most = FASTEST_SHAFT if own is None else FASTER * own.n
     if n is not None and n > most:

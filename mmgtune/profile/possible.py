@@ -10,9 +10,6 @@ from ..components import AT_LEAST_0, AT_MOST_0, Field
 from ..effects import Parameter
 from ..units import DIMENSIONLESS
 
-FROUDE = 1.0
-"""Speed over sqrt(g L_pp) [1] that no ship of displacement comes near: ships stay below 0.5."""
-
 FASTEST_SHAFT = 100.0
 """Revolutions [1/s] that no propeller makes, not even a model's."""
 

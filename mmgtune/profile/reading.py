@@ -12,11 +12,11 @@ from typing import Any, TypeVar
 
 from .. import limits, units
 from ..components import ARRANGEMENTS, KINDS, UNTAGGED, Arrangement, Component, Field, find, find_arrangement, tags
+from ..components.speeds import too_fast
 from ..effects import Effect, Parameter, effect_tags, find_effect
 from ..errors import Problem, ProfileError, among, brief, near_to, reason
 from ..inputs import Input
 from ..metrics import METRICS
-from ..physics.constants import GRAVITY
 from ..physics.regressions.fujiwara1998 import wind_harmonics
 from ..resources import (
     DOCUMENTS,
@@ -34,7 +34,7 @@ from ..toml_reading import TomlReader, toml_of
 from ..units import KNOT
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
-from .possible import FASTEST_SHAFT, FROUDE, impossible, may_be_infinite, out_of_proportion
+from .possible import FASTEST_SHAFT, impossible, may_be_infinite, out_of_proportion
 
 SCHEMA = 1
 PLAIN = ("steering_gear", "actuators", "approach", "tuning", "limits", "provenance")
@@ -445,12 +445,13 @@ class _Reader(TomlReader):
                     why=f"it needs {', '.join(missing)}, which this profile does not have",
                     fix="remove the table, or add what is missing",
                 )
-        if profile.approach is not None and profile.approach.speed > (most := FROUDE * math.sqrt(GRAVITY * L_pp)):
+        froude = None if profile.approach is None else too_fast(profile.approach.speed, L_pp)
+        if profile.approach is not None and froude is not None:
             self.problem(
                 f"'approach.speed' is {profile.approach.speed / KNOT:.4g} kn",
                 "approach",
                 "speed",
-                f"a Froude number of {profile.approach.speed / most:.3g}; ships stay below 0.5",
+                f"a Froude number of {froude:.3g}; ships stay below 0.5",
                 "check its unit, and that of L_pp",
             )
         propeller = profile.sections["propeller"].coefficients if "propeller" in profile.sections else {}

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
+from ..components.speeds import too_fast
 from ..physics.constants import GRAVITY
 from ..physics.frame import to_earth
 from ..units import DEG
@@ -22,6 +23,8 @@ FASTEST = {
     "r": (3.0, "rad/s^2"),
 }  # fmt: skip
 """Change per second that neither ships nor models of a metre make, by channel."""
+FASTEST_SHIP = 60.0
+"""Speed [m/s] that no ship makes, whatever her length."""
 AMIDSHIPS = 3.0 * DEG
 """Rudder angle below which a ship goes about straight on."""
 FEWEST = 5
@@ -95,12 +98,14 @@ def _speed(trial: Trial, where: str, L_pp: float | None) -> list[Finding]:
     speed = np.hypot(trial.u, trial.v_m)
     speed = speed[np.isfinite(speed)]
     usual = float(np.percentile(speed, 90.0)) if len(speed) else 0.0
-    most = 60.0 if L_pp is None else np.sqrt(GRAVITY * L_pp)
-    if usual <= most:
-        return []
-    why = "no ship is as fast"
-    if L_pp is not None:
-        why = f"a Froude number of {usual / most:.2g} with {L_pp:.4g} m between perpendiculars; ships stay below 0.5"
+    if L_pp is None:
+        if usual <= FASTEST_SHIP:
+            return []
+        why = "no ship is as fast"
+    else:
+        if (froude := too_fast(usual, L_pp)) is None:
+            return []
+        why = f"a Froude number of {froude:.2g} with {L_pp:.4g} m between perpendiculars; ships stay below 0.5"
     return [
         _warning(
             f"the ship makes {usual:.3g} m/s", f"{where}, columns 'u' and 'v'", why, "check the unit of 'u' and 'v'"
