@@ -13,7 +13,7 @@ from collections import namedtuple
 from typing import Any
 
 from ..physics.elementary import sin
-from ..physics.prime import force_unit, moment_unit
+from ..physics.prime import force_from_prime
 from ..physics.quantities import Force, State, Surroundings
 from .effect import ForceEffect, Parameter
 
@@ -111,9 +111,7 @@ def discrepancy(state: State, around: Surroundings, found: Any, components: Any,
         + e.N_even6 * (s6 * s6)
         + e.N_even7 * (s7 * s7)
     )
-    force = force_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
-    moment = moment_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
-    return Force(X=force * X_, Y=force * Y_, N=moment * N_)
+    return force_from_prime(p.ship, found.flow.U, X_, Y_, N_)
 
 
 def shared_by_sides(term: str) -> bool:

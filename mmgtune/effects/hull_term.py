@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..physics.prime import force_unit, moment_unit
+from ..physics.prime import force_from_prime
 from ..physics.quantities import Force, Forces, State, Surroundings
 from .effect import ForceEffect, Parameter
 
@@ -47,9 +47,7 @@ def hull_term(state: State, around: Surroundings, found: Forces, components: Any
         + r * (e.N_r + e.N_ur * u + e.N_rabsr * ar + e.N_rabsv * av + e.N_rrr * rr)
         + (e.N_absr * ar + e.N_vv * vv + e.N_rr * rr + e.N_rrabsr * (rr * ar))
     )
-    force = force_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
-    moment = moment_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
-    return Force(X=force * X_, Y=force * Y_, N=moment * N_)
+    return force_from_prime(p.ship, found.flow.U, X_, Y_, N_)
 
 
 def symbol(term: str) -> str:

@@ -5,6 +5,8 @@ Mass by 0.5 rho L^2 d, moment of inertia by 0.5 rho L^4 d, force by 0.5 rho L d 
 Yasukawa & Yoshimura 2015).
 """
 
+from .quantities import Force
+
 
 def mass_unit(rho, L, d):
     """Denominator of masses [kg]."""
@@ -24,3 +26,13 @@ def force_unit(rho, L, d, U):
 def moment_unit(rho, L, d, U):
     """Denominator of moments [N m] at the reference speed U [m/s]."""
     return 0.5 * rho * L * L * d * U * U
+
+
+def force_from_prime(ship, U, X_, Y_, N_):
+    """Force [N, N, N m] of what it is in the prime system [-] at the reference speed U [m/s].
+
+    ship Ship, U and X_, Y_, N_: floats or (n_lanes,) -> Force of the same shape.
+    """
+    force = force_unit(ship.rho, ship.L_pp, ship.d, U)
+    moment = moment_unit(ship.rho, ship.L_pp, ship.d, U)
+    return Force(X=force * X_, Y=force * Y_, N=moment * N_)

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from ..prime import force_unit, moment_unit
-from ..quantities import Force, Lanes
+from ..prime import force_from_prime
+from ..quantities import Lanes
 from .astern import resistance_ahead
 
 
@@ -46,6 +46,4 @@ def cubic_hull(flow, ship, p):
     X_ = -R_ + p.X_vv * v2 + p.X_vr * v_ * r_ + p.X_rr * r2 + p.X_vvvr * v2 * v_ * r_ + p.X_vvvv * v2 * v2
     Y_ = p.Y_v * v_ + p.Y_r * r_ + p.Y_vvv * v2 * v_ + p.Y_vvr * v2 * r_ + p.Y_vrr * v_ * r2 + p.Y_rrr * r2 * r_
     N_ = p.N_v * v_ + p.N_r * r_ + p.N_vvv * v2 * v_ + p.N_vvr * v2 * r_ + p.N_vrr * v_ * r2 + p.N_rrr * r2 * r_
-    force = force_unit(ship.rho, ship.L_pp, ship.d, flow.U)
-    moment = moment_unit(ship.rho, ship.L_pp, ship.d, flow.U)
-    return Force(X=force * X_, Y=force * Y_, N=moment * N_)
+    return force_from_prime(ship, flow.U, X_, Y_, N_)

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..prime import force_unit, moment_unit
-from ..quantities import Force, Lanes
+from ..prime import force_from_prime
+from ..quantities import Lanes
 from .astern import resistance_ahead
 
 
@@ -46,6 +46,4 @@ def derivatives_hull(flow, ship, p):
     X_ = -resistance_ahead(p.R_0, flow) + p.X_vr * v_ * r_
     Y_ = v_ * (p.Y_v + p.Y_vv * av + p.Y_vr * ar + p.Y_vvr * v_ * r_ + p.Y_vrr * r_ * r_) + r_ * (p.Y_r + p.Y_rr * ar)
     N_ = v_ * (p.N_v + p.N_vv * av + p.N_vvr * v_ * r_ + p.N_vrr * r_ * r_) + r_ * (p.N_r + p.N_rr * ar)
-    force = force_unit(ship.rho, ship.L_pp, ship.d, flow.U)
-    moment = moment_unit(ship.rho, ship.L_pp, ship.d, flow.U)
-    return Force(X=force * X_, Y=force * Y_, N=moment * N_)
+    return force_from_prime(ship, flow.U, X_, Y_, N_)
