@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .layer import layer
 from .motion import SIDES, Array, observed
 
 
@@ -69,13 +70,13 @@ def projected(seen: Array, w: Weights) -> Array:
 
 def remembered(part: Array, memory: Array, w: Weights) -> Array:
     """The first layer, (..., width), from what is seen now and its own last value: eq. 8, first line."""
-    return np.tanh(part + memory @ w.W_r + w.b_0) - np.tanh(w.b_0)
+    return layer(part + memory @ w.W_r, w.b_0)
 
 
 def accelerations(memory: Array, w: Weights, scales: Scales) -> Array:
     """(..., 3) of u [m/s^2], v_m [m/s^2], r [rad/s^2] from the first layer: eq. 8, the other lines."""
-    z_2 = np.tanh(memory @ w.W_1 + w.b_1) - np.tanh(w.b_1)
-    z_3 = np.tanh(z_2 @ w.W_2 + w.b_2) - np.tanh(w.b_2)
+    z_2 = layer(memory @ w.W_1, w.b_1)
+    z_3 = layer(z_2 @ w.W_2, w.b_2)
     return (z_3 @ w.W_3) * scales.accelerations
 
 
@@ -90,7 +91,7 @@ def truncated(part: Array, held: Array, w: Weights) -> tuple[Array, Array]:
     with one step a sample: the same numbers from one wide product in place of m - 1 narrow ones.
     """
     n = part.shape[-2]
-    begun = np.tanh(part + w.b_0) - np.tanh(w.b_0)
+    begun = layer(part, w.b_0)
     older = remembered(np.tile(part, (held.shape[-2] // n, 1)), held, w)
     every = np.concatenate([begun, older], axis=-2)
     kept = held.shape[-2]

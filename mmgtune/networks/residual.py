@@ -11,6 +11,7 @@ import numpy as np
 
 from ..physics.elementary import exp
 from ..physics.frame import to_ship
+from .layer import layer
 from .motion import SIDES
 
 Array = Any
@@ -75,6 +76,6 @@ def settling(velocities: Array, settled: Array, time_constant: Array) -> Array:
 
 
 def _layers(x: Array, w: ResidualWeights) -> Array:
-    z_1 = np.tanh(x @ w.W_1 + w.b_1) - np.tanh(w.b_1)
-    z_2 = np.tanh(z_1 @ w.W_2 + w.b_2) - np.tanh(w.b_2)
+    z_1 = layer(x @ w.W_1, w.b_1)
+    z_2 = layer(z_1 @ w.W_2, w.b_2)
     return z_2 @ w.W_3
