@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
-from .errors import OptionError, Problem, brief
+from .errors import OptionError, Problem, brief, kind_of
 
 EVALUATIONS = "evaluations"
 """What progress of least squares is counted in: what there is in all may be exceeded."""
@@ -34,7 +34,7 @@ class Phase(str):
         return made
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Hooks:
     """What the caller wants to hear and to say while work goes on.
 
@@ -51,6 +51,11 @@ class Hooks:
     on_generation: Callable[[Any], None] = lambda _: None
     stop: Callable[[], bool] = lambda: False
 
+    def __repr__(self) -> str:
+        """The functions given, by name: help shows this as a default, which is to be the same in every run."""
+        given = [one.name for one in fields(self) if getattr(self, one.name) is not one.default]
+        return f"{type(self).__name__}({', '.join(f'{name}={_name_of(getattr(self, name))}' for name in given)})"
+
     def __post_init__(self) -> None:
         """Raises OptionError for what cannot be called."""
         for one in fields(self):
@@ -60,6 +65,10 @@ class Hooks:
                 raise OptionError(
                     Problem(f"{one.name} is {brief(given)}", one.name, "it is called while work goes on", fix)
                 )
+
+
+def _name_of(function: Callable[..., Any]) -> str:
+    return getattr(function, "__qualname__", None) or f"<{kind_of(function)}>"
 
 
 @contextmanager

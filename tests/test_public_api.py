@@ -61,6 +61,14 @@ def test_a_fit_in_the_place_of_trials_is_told_of_lists():
     assert len(repr(mmgtune.track_of(mmgtune.load_trials("suzaku")["turn_p35"]))) < 200
 
 
+def test_help_says_the_same_in_every_run():
+    functions = [getattr(mmgtune, name) for name in mmgtune.__all__]
+    signatures = {one.__name__: str(inspect.signature(one)) for one in functions if inspect.isfunction(one)}
+    assert [name for name, signature in signatures.items() if " at 0x" in signature] == []
+    assert "Hooks()" in signatures["fit"]
+    assert repr(mmgtune.Hooks(on_phase=print)) == "Hooks(on_phase=print)"
+
+
 def test_from_profile_to_verdict(tmp_path):
     profile = mmgtune.load_profile("suzaku")
     trials = mmgtune.load_trials("suzaku")

@@ -92,12 +92,14 @@ def run_fleet(
     options: FleetOptions = FleetOptions(),
     *,
     resume: bool = False,
-    on_progress: Callable[[Progress], None] = lambda _: None,
+    on_progress: Callable[[Progress], None] | None = None,
     command: str = "",
 ) -> FleetRun:
     """Run all jobs of a table that are not done yet, and write the record and the classes of sister ships.
 
-    resume  whether ``out`` may hold results already: jobs of the same data, options and program are not run again
+    resume       whether ``out`` may hold results already: jobs of the same data, options and program are not run again
+    on_progress  called as jobs are done
+
     Raises OptionError for a table that makes no sense or a scheduler that does not answer, OutputError for ``out``.
     """
     must_be(options, FleetOptions)
@@ -114,7 +116,7 @@ def run_fleet(
         write_text(out / JOBS, json.dumps(_listed(jobs), indent=1) + "\n")
         left = _left(jobs, out, options.retry)
         began = time.perf_counter()
-        ran, killed, workers = _ran(jobs, left, out, options, on_progress)
+        ran, killed, workers = _ran(jobs, left, out, options, on_progress or (lambda _: None))
         document = write_record(out, {**made_by(command), "table": read.path.name})
         return FleetRun(tuple(jobs), ran, killed, time.perf_counter() - began, workers, document)
 
