@@ -42,6 +42,7 @@ long: $(DEV) ## the tests left out of test: more of the same, on other ships, ca
 
 lint: $(DEV) ## style and common mistakes
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check --quiet .
 
 types: $(DEV) ## static types
 	$(BIN)/mypy
