@@ -111,7 +111,8 @@ def discrepancy(state: State, around: Surroundings, found: Any, components: Any,
         + e.N_even6 * (s6 * s6)
         + e.N_even7 * (s7 * s7)
     )
-    return force_from_prime(p.ship, found.flow.U, X_, Y_, N_)
+    force: Force = force_from_prime(p.ship, found.flow.U, X_, Y_, N_)
+    return force
 
 
 def shared_by_sides(term: str) -> bool:

@@ -47,7 +47,8 @@ def hull_term(state: State, around: Surroundings, found: Forces, components: Any
         + r * (e.N_r + e.N_ur * u + e.N_rabsr * ar + e.N_rabsv * av + e.N_rrr * rr)
         + (e.N_absr * ar + e.N_vv * vv + e.N_rr * rr + e.N_rrabsr * (rr * ar))
     )
-    return force_from_prime(p.ship, found.flow.U, X_, Y_, N_)
+    force: Force = force_from_prime(p.ship, found.flow.U, X_, Y_, N_)
+    return force
 
 
 def symbol(term: str) -> str:
