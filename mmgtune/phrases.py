@@ -4,6 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+LARGE = 10.0
+"""Variance beyond the noise, over that of the noise, from which an error is told as a multiple of the noise."""
+
+QUANTITIES = {
+    "heading": "heading",
+    "drift": "drift angle",
+    "yaw_rate": "yaw rate r L/U",
+    "rudder": "rudder angle",
+    "ordered": "time since the last order",
+    "speed": "speed",
+    "time": "time",
+    "north": "position north",
+    "east": "position east",
+    "wind_angle": "angle of the measured wind",
+    "wind_speed": "speed of the measured wind",
+}
+"""What an error is held against, by the names that records have for it."""
+
 
 def capital(text: str) -> str:
     """A text as a sentence begins."""

@@ -8,7 +8,7 @@ from shlex import quote
 from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
-from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
+from ..options.learning import ROLES, EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
 from ..phrases import counted
 from . import common as c
 from . import compare, learn_mixture
@@ -206,7 +206,7 @@ def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -
         lines.append(f"{'seed':>6}{'updates':>11}{'loss':>12}")
         lines += [f"{row['seed']:>6}{row['best_step']:>11}{_shown(row['loss']):>12}" for row in members]
     for role, scores in result.scores.items():
-        lines += ["", f"L_MSE on the trials {_ROLES[role]}, mean and deviation over seeds", *_by_kind(scores)]
+        lines += ["", f"L_MSE on the trials {ROLES[role]}, mean and deviation over seeds", *_by_kind(scores)]
     events = [event for one in members for event in one["events"]]
     return "\n".join([*lines, "", SCALE, *_ending(found, events, folder, report)])
 
@@ -223,7 +223,7 @@ def ensemble_summary(result: LearnedEnsemble, found: dict[str, Any], folder: str
         f"{k:>8}{row['steps']:>9}{_shown(row['loss']):>10}   {_shown(row['score'])}" for k, row in enumerate(members)
     ]
     for role, scores in result.scores.items():
-        lines += ["", f"L_MSE on the trials {_ROLES[role]}, mean and deviation over members", *_by_kind(scores)]
+        lines += ["", f"L_MSE on the trials {ROLES[role]}, mean and deviation over members", *_by_kind(scores)]
     events = [event for one in members for event in one["events"]]
     return "\n".join([*lines, "", SCALE, *_ending(found, events, folder, report)])
 
@@ -232,9 +232,6 @@ SCALE = (
     "L_MSE is counted in the spread of the trials that tune; mmgtune compare counts in that of the trials it is given, "
     "or of those named by --sigma-from."
 )
-
-
-_ROLES = {"test": "held out", "validation": "kept back", "learned": "learned from"}
 
 
 def _shown(value: float | None) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..phrases import capital, in_percent, listed
+from ..phrases import LARGE, capital, in_percent, listed
 from ..units import DEG
 from .belief import TOLD
 from .gain import MOST
@@ -18,9 +18,6 @@ from .verdict import Answer
 
 IMITATED = 0.5
 """Share of the error removed below which it is said that a hull a little off is part of what it is counted from."""
-
-LARGE = 10.0
-"""Variance beyond noise from which it is told as a multiple of the noise."""
 
 
 FADES = 5.0

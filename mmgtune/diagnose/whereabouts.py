@@ -16,6 +16,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..documents import finite
+from ..phrases import QUANTITIES
 from ..trial import Trial, measured_wind
 from ..trial.set_checks import odd_in_words
 from ..units import DEG
@@ -76,20 +77,6 @@ SLOW = 0.2
 """Share of the usual speed below which forces over the square of the speed say nothing."""
 
 PERIODIC = ("heading", "wind_angle")
-
-WORDS = {
-    "heading": "heading",
-    "drift": "drift angle",
-    "yaw_rate": "yaw rate r L/U",
-    "rudder": "rudder angle",
-    "ordered": "time since the last order",
-    "speed": "speed",
-    "time": "time",
-    "north": "position north",
-    "east": "position east",
-    "wind_angle": "angle of the measured wind",
-    "wind_speed": "speed of the measured wind",
-}
 
 TELLS = {
     "heading": (
@@ -214,9 +201,9 @@ class Whereabouts:
         if best:
             shares = self.follows[best[0]]
             others = [name for name in shares if name != best[1] and shares[name] >= max(FOLLOWS, best[2] - NEAR)]
-            beside = ", ".join(f"{WORDS[name]} {_percent(shares[name])}" for name in others)
+            beside = ", ".join(f"{QUANTITIES[name]} {_percent(shares[name])}" for name in others)
             found.append(
-                f"The {AXES[best[0]]} follows the {WORDS[best[1]]}, which alone predicts {_percent(best[2])} of it"
+                f"The {AXES[best[0]]} follows the {QUANTITIES[best[1]]}, which alone predicts {_percent(best[2])} of it"
                 + (f"; nearly as well do: {beside}." if beside else ".")
             )
         elif self.follows:

@@ -13,7 +13,7 @@ from ..displayed import inert
 from ..errors import OptionError, Problem, among, brief, parts_of
 from ..inputs import INPUTS
 from ..report.svg import FILE_COLORS
-from ..report.wording import CHANNELS, Channel, input_channel
+from ..report.wording import CHANNELS, OVER_TIME, Channel, input_channel
 from .view import Line, Room, View
 from .words import words
 
@@ -36,9 +36,6 @@ COLOURS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#d55e00")
 """Of models, told apart by those who see colours otherwise too (Okabe & Ito)."""
 
 DASHES = ("dashed", "dashdot", (0, (1.2, 1.6)), (0, (7, 2, 1, 2, 1, 2)))
-
-SHOWN = ("psi", "u", "v_m", "r")
-"""Motions in histories where none is named."""
 
 
 def plain(draw: Callable[..., Any]) -> Callable[..., Any]:
@@ -245,7 +242,7 @@ def _label(name: str) -> str:
 def _usual(lines: Sequence[Line]) -> list[str]:
     """Motions, and what drives the ship."""
     inputs = dict.fromkeys(name for line in lines for name in line.columns if name in INPUTS)
-    return [*SHOWN, *inputs]
+    return [*OVER_TIME, *inputs]
 
 
 def _shared(name: str, lines: Sequence[Line]) -> bool:

@@ -18,6 +18,10 @@ TYPES = ("1", "2", "3", "4", "5")
 """Types of networks in Wakita et al. 2022, Table 7."""
 
 
+ROLES = {"test": "held out", "validation": "kept back", "learned": "learned from"}
+"""Trials by what they are to a training, in words."""
+
+
 @dataclass(frozen=True)
 class TrainingOptions(Options):
     """Choices of every training."""

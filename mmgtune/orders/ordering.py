@@ -16,7 +16,7 @@ from ..backends import Backend, LaneModel
 from ..backends.cases import pad
 from ..model import Model
 from .helmsmen import OF_FEW_ORDERS
-from .sailing import ROLES, Watch
+from .sailing import ACTUATORS, Watch
 from .stepping import RK4
 
 AHEAD = 500
@@ -61,7 +61,7 @@ class _Way:
 
     def __init__(self, watch: Watch, model: Model):
         self.watch = watch
-        self.roles = [ROLES.index(one.role) for one in model.arrangement.inputs]
+        self.roles = [ACTUATORS.index(one.role) for one in model.arrangement.inputs]
         self.actuators = [model.profile.actuator(name) for name in model.inputs]
         self.start = np.array([0.0, 0.0, watch.sailing.heading, watch.U_0, 0.0, 0.0])
         resting = 0.0, watch.n_0, 0.0

@@ -27,7 +27,7 @@ FINE = 0.01
 LONGEST_STEP = 0.25
 """Longest step [s]; it is also how often the helmsman looks at the compass."""
 
-ROLES: tuple[Role, ...] = ("rudder", "propeller", "thruster")
+ACTUATORS: tuple[Role, ...] = ("rudder", "propeller", "thruster")
 """What orders are given to, in the order in which a watch gives them."""
 
 
@@ -157,7 +157,7 @@ class Watch:
         self.controls: list[FloatArray] = []
 
     def orders(self, step: int, shown: FloatArray, state: FloatArray) -> tuple[float, ...]:
-        """What is ordered at a step, by ``ROLES``; nothing new once the manoeuvre is over."""
+        """What is ordered at a step, by ``ACTUATORS``; nothing new once the manoeuvre is over."""
         sailing = self.sailing
         if self.over:
             return 0.0, self.n_0, 0.0

@@ -11,7 +11,7 @@ from ..backends import LaneModel
 from ..backends.cases import Integrator
 from ..model import Model
 from ..physics.quantities import UNKNOWN, State
-from .sailing import ROLES, Watch
+from .sailing import ACTUATORS, Watch
 
 RK4 = Integrator("rk4")
 
@@ -53,7 +53,7 @@ class _Fleet:
         seen = zip(self.watches, self._shown(), self._states(), strict=True)
         orders = np.array([watch.orders(self.steps, shown, state) for watch, shown, state in seen]).T
         for place, (one, actuator) in enumerate(zip(self.inputs, self.actuators, strict=True)):
-            order = orders[ROLES.index(one.role)]
+            order = orders[ACTUATORS.index(one.role)]
             self.driven[place] = actuator.moved(self.driven[place], order, self.h) if actuator else order
         with np.errstate(all="ignore"):
             self.run.step(self._control(), UNKNOWN, self.h[self._lanes], RK4)

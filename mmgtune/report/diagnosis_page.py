@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..phrases import small
+from ..phrases import LARGE, QUANTITIES, small
 from ..units import DIMENSIONLESS, NORMAL_95, read_as
 from . import advice, findings, measures, motion_block, svg, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
@@ -65,16 +65,6 @@ _FORCE_WORDS = {
     "dX'": "surge′ [–]", "dY'": "sway′ [–]", "dN'": "yaw′ [–]",
 }  # fmt: skip
 """What is missing of the forces; with a prime, over the square of speed."""
-
-_VARIABLES = {
-    "heading": "heading",
-    "drift": "drift angle",
-    "yaw_rate": "yaw rate",
-    "rudder": "rudder angle",
-    "ordered": "time since rudder order",
-    "speed": "speed",
-    "time": "time",
-}
 
 
 def build(record: DiagnosisRecord) -> Page:
@@ -534,7 +524,7 @@ def _forces(forces: Mapping[str, Any], which: str, words: str) -> Table:
     return Table(
         f"forces-{which}",
         f"Residual forces by inverse dynamics {words}",
-        ("force", *(_VARIABLES.get(name, name) for name in variables), "noise"),
+        ("force", *(QUANTITIES.get(name, name) for name in variables), "noise"),
         tuple(
             cells(
                 _FORCE_WORDS.get(axis, clean(axis)),
@@ -568,7 +558,7 @@ def _left(data: Mapping[str, Any]) -> Block:
     known = number(left["share_of_noise_variance"]) or 0.0
     said = (
         f"The error is {size} from sample to sample"
-        if known >= 10.0
+        if known >= LARGE
         else f"What is left is {size} of the noise's variance beyond that noise"
     )
     sentences = [f"On the trials looked at: {small(said)}, and looks like something that happened."]

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..options.learning import ROLES
 from .blocks import Card, Page, Prose, Section, Table, cells
 from .common import banner_of_sources, of_training, picture, rms_errors
 from .learned_motions import block
 from .learning_page import (
     MEANING,
-    ROLES,
     LearningRecord,
     curves_figure,
     events_said,
     made_section,
     next_steps,
+    off_in_words,
     scores_table,
     tracks_words,
 )
@@ -60,14 +61,8 @@ def build(record: LearningRecord) -> Page:
 
 
 def _verdict(record: LearningRecord) -> str:
-    position, heading = rms_errors(record.data, record.scores)
-    window = number(record.data["window_s"])
-    over = f"over {shown(window, 3)} s" if window else "over whole trials"
-    return (
-        f"{over.capitalize()} from a measured state its members are {shown(position, 3)} m off track and "
-        f"{shown(heading, 2)}° off heading (root mean square) on {count(len(record.scores['trials']), 'trial')} "
-        f"{ROLES[record.role]}; how far they disagree says where the data tell them little."
-    )
+    off = off_in_words(record, "its members are")
+    return f"{off} {ROLES[record.role]}; how far they disagree says where the data tell them little."
 
 
 def _cards(record: LearningRecord) -> tuple[Card, ...]:

@@ -11,14 +11,13 @@ import numpy as np
 from ..arrays import FloatArray
 from ..physics.frame import to_earth
 from .plot import Area, Axis, Color, Dots, Figure, Line, Look, Mark, Panel, Shapes, model_look
-from .wording import CHANNELS, clean, number
+from .wording import CHANNELS, OVER_TIME, clean, number
 
 if TYPE_CHECKING:
     Columns = Mapping[str, FloatArray]
 
     Legend = list[tuple[str, Look | tuple[Color, float]]]
 
-SHOWN = ("psi", "u", "v_m", "r")
 OUTLINES = 7
 """Ships drawn along a track."""
 
@@ -60,7 +59,7 @@ def track(
 def motions(name: str, alt: str, bands: Mapping[str, Columns], level: float, several: bool) -> Figure:
     """Heading, velocities and yaw rate over time, each with its fan."""
     panels, seen = [], False
-    for state in SHOWN:
+    for state in OVER_TIME:
         channel, found = CHANNELS[state], bands[state]
         t = found["t"]
         with np.errstate(over="ignore"):  # of numbers that somebody damaged

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..inputs import INPUTS
+from ..options.learning import ROLES
 from . import learned_motions
 from .advice import shortest
 from .blocks import Card, Commands, Page, Prose, Section, Table, cells
@@ -18,7 +19,6 @@ from .plot import Axis, Color, Dash, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs
 from .wording import clean, count, listing, number, shown
 
-ROLES = {"test": "held out", "validation": "validation", "learned": "learned from"}
 _PARTS = {
     "test": "that played no part",
     "validation": "that chose among their weights",
@@ -69,7 +69,7 @@ def build(record: LearningRecord) -> Page:
     return Page(
         title=f"Networks of {clean(data['ship'])}: type {clean(data['type'])}",
         eyebrow=f"{clean(data['ship'])} · networks of type {clean(data['type'])}: {clean(data['recipe'])}",
-        verdict=of_training(data, _verdict(record)),
+        verdict=of_training(data, f"{off_in_words(record, 'the networks are')} {_PARTS[record.role]}."),
         banners=banner_of_sources(data["provenance"]["trials"].get("sources"), learned=True),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(record),
@@ -77,14 +77,17 @@ def build(record: LearningRecord) -> Page:
     )
 
 
-def _verdict(record: LearningRecord) -> str:
+def off_in_words(record: LearningRecord, of: str) -> str:
+    """How far off networks are, as a sentence begins that says next which trials that is on.
+
+    of  what the networks are called, with its verb
+    """
     position, heading = rms_errors(record.data, record.scores)
     window = number(record.data["window_s"])
     over = f"over {shown(window, 3)} s" if window else "over whole trials"
     return (
-        f"{over.capitalize()} from a measured state the networks are {shown(position, 3)} m off track and "
-        f"{shown(heading, 2)}° off heading (root mean square) on {count(len(record.scores['trials']), 'trial')} "
-        f"{_PARTS[record.role]}."
+        f"{over.capitalize()} from a measured state {of} {shown(position, 3)} m off track and "
+        f"{shown(heading, 2)}° off heading (root mean square) on {count(len(record.scores['trials']), 'trial')}"
     )
 
 

@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 from .blocks import Cell, Table, cells
 from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, Words
-from .wording import NONE, change, number, percent, shown
+from .wording import NONE, TRIALS_OF_ROLE, change, number, percent, shown
 
 if TYPE_CHECKING:
     from .load import SweepRecord
@@ -61,9 +61,6 @@ def series_of(record: SweepRecord) -> list[Series]:
     return [series for series in found if any(value is not None for value in series.values)]
 
 
-ROLES = {"test": "test trials", "left-out": "trials left out in turn", "tune": "trials tuned on"}
-"""Roles of trials in what a record says of how far off they are, those not tuned on first."""
-
 _LOOKS = {
     "tune": Look("after", 1.7, "", "o", 7),
     "test": Look("flag", 1.7, "dash", "s", 6),
@@ -84,7 +81,7 @@ def off_figure(record: SweepRecord, best: float | None) -> Figure | None:
     panels, roles = [], []
     for key, (words, unit, _) in _WAYS.items():
         marks: list[Mark] = []
-        for role in ROLES:
+        for role in TRIALS_OF_ROLE:
             points = [
                 (a_r, size)
                 for a_r, size in zip(ranges, off_of(record, role, key), strict=True)
@@ -98,7 +95,7 @@ def off_figure(record: SweepRecord, best: float | None) -> Figure | None:
             panels.append(
                 Panel(tuple(marks), _across(ranges, best, "range a_r"), Axis(f"{words} [{unit}]", log=True, room=0.12))
             )
-    legend = tuple((ROLES[role], _LOOKS[role]) for role in _LOOKS if role in roles)
+    legend = tuple((TRIALS_OF_ROLE[role], _LOOKS[role]) for role in _LOOKS if role in roles)
     alt = "Metres off track and degrees off heading against the range a_r"
     return Figure("off", alt, tuple(panels), legend) if panels else None
 
@@ -107,13 +104,13 @@ def off_finding(record: SweepRecord) -> str:
     """Where trials that were held out are least off."""
     ranges = [float(run["a_r"]) for run in record.runs]
     parts = []
-    role = next((role for role in ROLES if any(off_of(record, role, "track_m"))), "test")
+    role = next((role for role in TRIALS_OF_ROLE if any(off_of(record, role, "track_m"))), "test")
     for key, (words, unit, digits) in _WAYS.items():
         known = [(size, a_r) for size, a_r in zip(off_of(record, role, key), ranges, strict=True) if size is not None]
         if known:
             size, a_r = min(known)
             parts.append(f"least {words} at a_r = {a_r:g} ({shown(size, digits)}{'°' if unit == 'deg' else ' m'})")
-    held = ROLES[role]
+    held = TRIALS_OF_ROLE[role]
     return f"{held[:1].upper()}{held[1:]}: {' and '.join(parts)}; root mean square, mean over trials."
 
 
@@ -180,7 +177,7 @@ def table(record: SweepRecord) -> Table:
             sizes = off_of(record, role, key)
             if any(sizes):
                 start = record.runs[0]["off"][role][key].get("before")
-                titles.append(f"{words}, {ROLES[role]} [{unit}]")
+                titles.append(f"{words}, {TRIALS_OF_ROLE[role]} [{unit}]")
                 for row, size in zip(rows, (start, *sizes), strict=True):
                     row.append(shown(size, digits))
     for series in found:

@@ -10,7 +10,7 @@ from . import findings, motions, tables_of_motion, tracks
 from .blocks import Motions, Picture, Table
 from .common import picture
 from .forces import MOST, NO_SHIP, Ship
-from .wording import Channel, clean, number
+from .wording import ROLES, Channel, clean, number
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -124,7 +124,7 @@ def misfit_of(row: Mapping[str, Any], model: str = "after") -> float:
 
 def _note(row: Mapping[str, Any], words: Mapping[str, str]) -> str:
     """What is said of a trial under its track."""
-    parts = [clean(row.get("manoeuvre") or ""), tracks.ROLES.get(str(row.get("role")), "")]
+    parts = [clean(row.get("manoeuvre") or ""), ROLES.get(str(row.get("role")), "")]
     for which in ("before", "after"):
         text = findings.off_track_words(row, which)
         if text and which in words:

@@ -25,7 +25,7 @@ from .common import (
 )
 from .load import Kind, SweepRecord
 from .tables import described
-from .wording import NONE, clean, coefficient_text, listing, number, short
+from .wording import NONE, TRIALS_OF_ROLE, clean, coefficient_text, listing, number, short
 
 _JUDGES = {"test set": "the test trials", "leave-one-trial-out": "leaving each trial out in turn"}
 
@@ -116,9 +116,9 @@ def _off(record: SweepRecord, run: Mapping[str, Any]) -> tuple[Card, ...]:
     """How far off the fit of a range is, in metres and degrees, on trials held out where there are any; of records
     without that from the range's own folder, nothing where that is not there.
     """
-    role = next((one for one in misfit.ROLES if one in (run.get("off") or {})), None)
+    role = next((one for one in TRIALS_OF_ROLE if one in (run.get("off") or {})), None)
     if role is not None:
-        return off_cards(run["off"][role], misfit.ROLES[role])
+        return off_cards(run["off"][role], TRIALS_OF_ROLE[role])
     folder = misfit.run_folder(run)
     path = record.folder / (folder or "") / "fit.json"
     if folder is None or not path.is_file():

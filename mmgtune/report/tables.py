@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from ..manoeuvres.named import in_order
 from .blocks import Cell, Table, cells
 from .findings import off_heading, off_track
-from .tracks import ROLES
 from .wording import (
     CHANNELS,
     NONE,
+    ROLES,
     change,
     clean,
     coefficient_text,

@@ -12,19 +12,15 @@ import numpy as np
 from ..arrays import FloatArray
 from .motions import Manoeuvre, Run
 from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel
-from .wording import CHANNELS, Channel
+from .wording import CHANNELS, OVER_TIME, Channel
 
 if TYPE_CHECKING:
     Motion = Mapping[str, FloatArray]
 
 WORDS = {"measured": "measured", "before": "before tuning", "after": "after tuning"}
-ROLES = {"tune": "tuned on", "test": "test", "other": "not used", "left-out": "left out"}
 PANELS = 12
 LONGEST = 38
 """Letters of a title of a panel."""
-
-SHOWN = ("psi", "u", "v_m", "r")
-"""Motions shown over time; positions are seen in the tracks."""
 
 
 def runs_of(words: Mapping[str, str]) -> list[Run]:
@@ -74,7 +70,7 @@ def distances(manoeuvres: Sequence[Manoeuvre], runs: Sequence[Run]) -> Figure:
 def histories(one: Manoeuvre, runs: Sequence[Run], inputs: Sequence[Channel]) -> Figure:
     """Motions and inputs of one manoeuvre over time."""
     panels = []
-    for channel in [*(CHANNELS[name] for name in SHOWN), *inputs]:
+    for channel in [*(CHANNELS[name] for name in OVER_TIME), *inputs]:
         marks: list[Mark] = []
         known = [run for run in runs if channel.name in one.runs.get(run.key, {})]
         for run in known[:1] if channel in inputs else known:

@@ -11,7 +11,7 @@ from typing import Any
 from .. import phrases
 from ..manoeuvres.named import BY_KEY
 from ..options import in_flags
-from ..phrases import listed
+from ..phrases import LARGE, listed
 from ..units import DEG, shown_in
 
 MINUS = "\u2212"
@@ -19,8 +19,6 @@ NONE = "\u2013"
 UNIT_PERCENT = "\u00a0%"
 LITTLE = 0.02
 """Variance over that of the noise up to which none is beyond it."""
-LARGE = 10.0
-"""Variance over that of the noise from which people think in multiples of the noise."""
 _MARKUP = re.compile(r"[<>&]")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
 
@@ -53,6 +51,14 @@ CHANNELS: Mapping[str, Channel] = {
     )
 }
 """The motions of a ship; what drives her differs from ship to ship, and records name it."""
+
+OVER_TIME = ("psi", "u", "v_m", "r")
+"""Motions shown over time; positions are seen in the tracks."""
+
+ROLES = {"tune": "tuned on", "test": "test", "other": "not used", "left-out": "left out"}
+"""Trials by what they are to a fit, in words; and in full, those not tuned on first."""
+
+TRIALS_OF_ROLE = {"test": "test trials", "left-out": "trials left out in turn", "tune": "trials tuned on"}
 
 
 def input_channel(name: str, words: str, unit: str) -> Channel:
