@@ -15,7 +15,7 @@ from .finding import Finding
 from .in_parts import part_findings
 from .kinematics import halfway, middle
 from .model import Trial
-from .motion_checks import spikes
+from .motion_checks import full_turns, spikes
 from .position_jumps import jump_findings
 
 FASTEST = {
@@ -79,7 +79,7 @@ def _changes(trial: Trial, where: str) -> dict[str, Finding]:
             continue
         step = np.diff(values[rows])
         if name == "psi":
-            step = np.where(np.abs(np.abs(step) - 2.0 * np.pi) < 1.0, 0.0, step)
+            step = np.where(full_turns(values[rows]), 0.0, step)
         rate = np.abs(step) / np.diff(trial.t[rows])
         # Where noise at a high rate makes such steps all along, they say nothing.
         odd = (rate > most) & (rate > 20.0 * np.median(rate))

@@ -89,6 +89,13 @@ def longest_run(rows: BoolArray) -> tuple[int, int]:
     return max(runs_of_true(rows), key=lambda run: run[1] - run[0])
 
 
+NOT_UNWRAPPED = {
+    "why": "it is not unwrapped; a jump would count as a miss of 360 deg",
+    "fix": "apply numpy.unwrap to 'psi'",
+}
+"""What is said of a heading with full turns in it."""
+
+
 def full_turns(psi: FloatArray) -> BoolArray:
     """(n_samples - 1,) where a heading [rad] jumps by a full turn from one sample to the next."""
     return np.asarray(np.abs(np.abs(np.diff(psi)) - 2.0 * np.pi) < 1.0)
@@ -105,8 +112,7 @@ def _jumps(trial: Trial, where: str) -> list[Finding]:
             "warning",
             f"the heading jumps by a full turn {jumps.sum()} times",
             f"{where}, column 'psi', row {row}",
-            "it is not unwrapped; a jump would count as a miss of 360 deg",
-            "apply numpy.unwrap to 'psi'",
+            **NOT_UNWRAPPED,
         )
     ]
 

@@ -14,7 +14,7 @@ from ..errors import Problem, TrialError
 from ..inputs import INPUTS
 from ..physics.constants import GRAVITY
 from .model import Trial, fields_of
-from .motion_checks import full_turns
+from .motion_checks import NOT_UNWRAPPED, full_turns
 from .pieces import cuts, named
 from .schema import MAIN_INPUTS, MOTION
 from .unusable import in_degrees
@@ -214,8 +214,7 @@ def _sound_headings(voyage: Voyage, block: Block, stretch: IntArray) -> None:
             Problem(
                 "the heading jumps by a full turn",
                 f"{voyage.path}, column 'psi', row {block.row + first + int(jumps[0]) + 1}",
-                "it is not unwrapped; a jump would count as a miss of 360 deg",
-                "apply numpy.unwrap to 'psi'",
+                **NOT_UNWRAPPED,
             )
         )
     if problems:
