@@ -134,7 +134,8 @@ def summary(repeated: Sequence[Repeated]) -> dict[str, dict[str, float | int]]:
     errors: dict[str, list[float]] = {}
     for one in repeated:
         for name, (measured, simulated) in one.judged.items():
-            scale = 1.0 if name.endswith("_deg") else measured
+            _, unit, _ = JUDGED[name]
+            scale = 1.0 if unit == "deg" else measured
             errors.setdefault(name, []).append((simulated - measured) / scale)
     return {
         name: {"n": len(of), "mean": float(np.mean(of)), "rms": float(np.sqrt(np.mean(np.square(of))))}

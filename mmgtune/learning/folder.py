@@ -41,7 +41,8 @@ ENSEMBLE_RESULT = "ensemble.json"
 POINTS = 200
 """Points of a drawn motion, about."""
 
-SHOWN = ("north_m", "east_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s")
+POSITIONS = ("north_m", "east_m")
+SHOWN = (*POSITIONS, "psi_rad", "u_m_s", "v_m_s", "r_rad_s")
 """Columns of drawn motions, in the order of the states."""
 
 
@@ -185,7 +186,7 @@ def drawn(
 
 
 def _motion(states: FloatArray) -> dict[str, list[float | None]]:
-    """States by name: metres to the centimetre, the rest to five digits; null in gaps."""
+    """States by name: positions to the centimetre, the rest to five digits; null in gaps."""
     return {
         name: [_short(float(v), name) if math.isfinite(v) else None for v in column]
         for name, column in zip(SHOWN, states.T, strict=True)
@@ -193,7 +194,7 @@ def _motion(states: FloatArray) -> dict[str, list[float | None]]:
 
 
 def _short(value: float, name: str) -> float:
-    return round(value, 2) if name.endswith("_m") else float(f"{value:.5g}")
+    return round(value, 2) if name in POSITIONS else float(f"{value:.5g}")
 
 
 @all_or_none()

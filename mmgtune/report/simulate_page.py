@@ -188,7 +188,7 @@ def _indices(record: SimulationRecord) -> Section | None:
             if not is_index(key) or number(value) is None:
                 continue
             words, unit = index_words(key)
-            length = number(run["indices"].get(key.removesuffix("_m") + "_over_L")) if key.endswith("_m") else None
+            length = number(run["indices"].get(key.removesuffix("_m") + "_over_L")) if unit == "m" else None
             line: list[str | Cell] = [run_words(run["id"]), f"{words} [{unit}]" if unit else words, shown(value)]
             line.append(shown(length, 3) if length is not None else NONE)
             if record.measured:
