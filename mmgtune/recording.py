@@ -48,8 +48,7 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
     write_table(folder / DRAWN / MOTIONS, _joined(columns))
     if result.ship is not None:
         write_text(folder / DRAWN / "profile.toml", result.ship.text)
-    _write(
-        folder / "simulate.json",
+    write_json(
         {
             **result.to_dict(),
             **made_by(command),
@@ -59,6 +58,7 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
             "inputs": [INPUTS[name].to_dict() for name in result.predictor.inputs],
             "out": str(folder),
         },
+        folder / "simulate.json",
     )
 
 
@@ -89,7 +89,7 @@ def write_validation(
         "orders": orders_of(list(data.trials.values())[:MOST], result.profiles[0].predictor.L_pp),
         "out": str(folder),
     }
-    _write(folder / "validate.json", document)
+    write_json(document, folder / "validate.json")
     return document
 
 
@@ -138,7 +138,3 @@ def _joined(columns: Mapping[str, list[Any]]) -> dict[str, Any]:
     return {
         name: np.concatenate(values) if values else empty.get(name, np.zeros(0)) for name, values in columns.items()
     }
-
-
-def _write(path: Path, document: Mapping[str, Any]) -> None:
-    write_json(document, path)

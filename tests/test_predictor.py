@@ -109,7 +109,7 @@ def test_check_measures_it(sailed):
 def test_evidence_and_simulation_take_it(sailed):
     trials = list(sailed.trials.values())
     assert [motion.member for motion in simulate_trials(Nomoto(), trials)] == [0, 1, 2, 0, 1, 2]
-    rms = [short_horizon(Nomoto(), trials, window=30.0, member=k).pooled_rms[5] for k in (0, 2)]
+    rms = [short_horizon(Nomoto(), trials, window=30.0, member=k).rms[0, 5] for k in (0, 2)]
     assert rms[0] != rms[1]
 
 

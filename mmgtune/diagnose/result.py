@@ -131,10 +131,6 @@ class Diagnosis(Answer):
         retuned = tuned(self.profile, self.kept, {}, facts, "extended", **data)
         return with_effects(retuned, values, f"diagnosed by {made_by}", stderr)
 
-    def extended_text(self) -> str:
-        """TOML of the extended profile."""
-        return self.extended_profile().text
-
     def to_dict(self) -> dict[str, Any]:
         """The document of ``diagnosis.json``, schema 1 (docs/formats.md)."""
         said = saying.said(self)

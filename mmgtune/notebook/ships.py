@@ -154,9 +154,9 @@ def record(one: TrialRecord) -> View:
     return View(repr(one), [f"J ({one.method}) {one.J:.4g}."], rows, motions=lambda: {one.trial.id: of_record(one)})
 
 
-def of_record(one: TrialRecord, words: str = "simulated", kind: str = "model") -> list[Line]:
+def of_record(one: TrialRecord) -> list[Line]:
     """A trial as measured and as simulated."""
-    return [measured(one.trial), *([] if one.diverged else [simulated(one.motion, words, kind)])]
+    return [measured(one.trial), *([] if one.diverged else [simulated(one.motion, "simulated")])]
 
 
 def measured(one: Trial) -> Line:

@@ -80,7 +80,7 @@ def test_runs_held_out_are_judged_on_what_follows_their_first_part(currents):
 
 def test_the_profile_keeps_nothing_of_a_run_and_the_record_all(currents, tmp_path):
     case, result = currents
-    profile = parse_profile(result.extended_text())
+    profile = parse_profile(result.extended_profile().text)
     assert "effects.current" not in profile.sections
     document = json.loads(json.dumps(write_diagnosis(result, tmp_path / "run"), allow_nan=False))
     (cause,) = document["causes"]
@@ -114,7 +114,7 @@ def test_a_current_that_hardly_differs_is_one_for_all(tmp_path):
     assert gains["trial"] - gains[""] > 50.0
     assert cause.runs is None
     assert cause.estimates["effects.current.north"].value == pytest.approx(-0.45, abs=0.01)
-    assert "effects.current" in parse_profile(result.extended_text()).sections
+    assert "effects.current" in parse_profile(result.extended_profile().text).sections
 
 
 @pytest.mark.long

@@ -191,7 +191,8 @@ def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
     assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["resistance"]), result.sentence()
     factor = result.to_dict()["causes"][0]["parameters"]["factor"]["value"]
     assert factor == pytest.approx(2.2, rel=0.02)
-    extended = parse_profile(result.extended_text())  # one of the two moved, and it is the one the sentence names
+    # one of the two moved, and it is the one the sentence names
+    extended = parse_profile(result.extended_profile().text)
     assert extended.value("hull.R_0") == PROFILE["hull.R_0"]
     assert extended.value("effects.resistance.factor") == pytest.approx(2.2, rel=0.02)
 
@@ -225,7 +226,7 @@ def drifted(tmp_path_factory):
 def test_the_extended_profile_is_a_profile_like_any_other(drifted):
     case, folder, result = drifted
     assert outcome(case.effects, result.to_dict()) == "right"
-    extended = parse_profile(result.extended_text())
+    extended = parse_profile(result.extended_profile().text)
     truth = case.effects["current"]
     for name in ("north", "east"):
         coefficient = extended.coefficient(f"effects.current.{name}")
@@ -234,7 +235,7 @@ def test_the_extended_profile_is_a_profile_like_any_other(drifted):
     again = diagnose(extended, load_trials(folder), DiagnoseOptions(effects=LIKE_IT))
     assert again.verdict == "none", [cause.tag for cause in again.causes]
     doubted = replace(result, interrupted=True)
-    profile = parse_profile(doubted.extended_text())
+    profile = parse_profile(doubted.extended_profile().text)
     assert "effects.current" not in profile.sections
     assert profile.value("wake.w_P0") == pytest.approx(result.retuned["wake.w_P0"])
     assert profile.value("wake.w_P0") != pytest.approx(extended.value("wake.w_P0"))

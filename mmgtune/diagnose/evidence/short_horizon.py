@@ -44,13 +44,8 @@ class ShortHorizon:
         return np.array([_rms(values) for values in self.residuals])
 
     @property
-    def pooled_rms(self) -> FloatArray:
-        """(6,) root mean square over all trials, in the units of ``residuals``; NaN without samples."""
-        return _rms(np.concatenate(self.residuals))
-
-    @property
     def pooled_rms_in_noise(self) -> FloatArray:
-        """(6,) the same in deviations of each trial's noise; NaN where there is none."""
+        """(6,) root mean square over all trials, in deviations of each trial's noise; NaN where there is none."""
         return _rms(np.concatenate(self._in_noise))
 
     @property
