@@ -156,7 +156,7 @@ def _train(
 def hybrid_summary(_: LearnedHybrid, found: dict[str, Any], folder: str, report: bool) -> str:
     """Plain-text summary of the result."""
     from ..fitting.comparison import rounded
-    from ..report.common import rms_errors
+    from ..how_far_off import rms_errors
 
     lines = []
     if found["gained"]:

@@ -13,6 +13,7 @@ from ..backends import STATES
 from ..displayed import Plotted, inert
 from ..documents import finite
 from ..evaluation import TrialRecord, records
+from ..how_far_off import mean
 from ..motions import Motion
 from ..objective import Objective
 from ..phrases import counted, counted_pieces
@@ -154,9 +155,9 @@ def mean_off(compared: Sequence[TrialComparison], which: str) -> dict[str, float
     """How far off "track" [m] and "heading" [deg] as mean over trials; without what is not known."""
     found = {}
     for of, values in zip(("track", "heading"), zip(*(one.off(which) for one in compared), strict=True), strict=False):
-        known = [value for value in values if np.isfinite(value)]
-        if known:
-            found[of] = sum(known) / len(known)
+        size = mean(map(finite, values))
+        if size is not None:
+            found[of] = size
     return found
 
 

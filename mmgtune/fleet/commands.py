@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import OptionError, Problem
+from ..how_far_off import mean, mean_off_heading, mean_off_track, rms_errors
 from ..options import CheckOptions, DiagnoseOptions, FitOptions, Options, SweepOptions, ValidateOptions
 from ..phrases import counted
 
@@ -107,8 +108,6 @@ def _of_fit(document: Mapping[str, Any], verdict: str, answer: str) -> Facts:
 
 def _errors(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """How far off before and after, on the trials that were not tuned on, all where there are none."""
-    from ..report.findings import mean_off_heading, mean_off_track
-
     rows = [row for row in results if row["role"] == "test"] or list(results)
     found: dict[str, Any] = {}
     for name, when in (("off", "before"), ("tuned", "after")):
@@ -181,7 +180,6 @@ def _seconds_of_diagnosis(task: Task) -> tuple[float, float]:
 
 def _validate(task: Task, folder: Path) -> tuple[str, Facts]:
     from ..recording import write_validation
-    from ..report.common import rms_errors
     from ..trial import holds_voyages, load_trials, load_voyages
     from ..validating import validate
 
@@ -203,15 +201,10 @@ def _validate(task: Task, folder: Path) -> tuple[str, Facts]:
     return "validate.json", Facts(
         "no" if lost else "good",
         f"{words}; {lost} diverged" if lost else words,
-        off_track=_mean(track),
-        off_heading=_mean(heading),
+        off_track=mean(track),
+        off_heading=mean(heading),
         generated=_generated(document["sources"]),
     )
-
-
-def _mean(values: Sequence[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return sum(known) / len(known) if known else None
 
 
 def _check(task: Task, folder: Path) -> tuple[str, Facts]:

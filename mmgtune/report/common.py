@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from itertools import chain, repeat
 from typing import Any
 
+from ..how_far_off import mean_off_heading, mean_off_track
 from ..profile.doubts import in_words
-from . import findings
 from .advice import shortest
 from .blocks import Block, Card, Fold, Picture, Prose, Section, Table
 from .plot import Figure
@@ -90,7 +89,7 @@ def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]
     held = [row for row in results if row.get("role") == "test"]
     rows = held if held and not where else list(results)
     where = where or ("test trials" if held else "trials tuned on")
-    means = {"track_m": findings.mean_off_track, "heading_deg": findings.mean_off_heading}
+    means = {"track_m": mean_off_track, "heading_deg": mean_off_heading}
     off = {key: {which: mean(rows, which) for which in ("before", "after")} for key, mean in means.items()}
     trials = {row.get("part_of") or row["id"] for row in rows}
     cut = {"windows": len(rows)} if any(row.get("part_of") for row in rows) else {}
@@ -126,16 +125,6 @@ def off_cards(off: Mapping[str, Any], where: str, piece: str = "window") -> tupl
             value = f"{shown(before, digits)} → {shown(after, digits)}{unit}"
             cards.append(Card(f"{label}, {where}", value, percent(moved), note, tone(moved)))
     return tuple(cards)
-
-
-def rms_errors(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
-    """Root mean square error of position [m] and heading [deg]; None where it diverged."""
-    parts, sigma = row["L_MSE_by_state"], data["sigma"]
-    squares = {name: number(parts.get(name)) for name in ("x", "y", "psi")}
-    if any(value is None for value in squares.values()):
-        return None, None
-    x, y, psi = ((squares[name] or 0.0) * sigma[name] ** 2 for name in ("x", "y", "psi"))
-    return math.sqrt(x + y), math.degrees(math.sqrt(psi))
 
 
 def picture(figure: Figure, title: str, caption: str, *data: Table) -> Picture:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..how_far_off import mean_off_heading, mean_off_track
 from ..phrases import LARGE, QUANTITIES, small
 from ..units import DIMENSIONLESS, NORMAL_95, read_as
 from . import advice, findings, measures, motion_block, svg, unexplained
@@ -126,8 +127,8 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
         )
     cards = []
     for label, mean, written in (
-        ("Off track, held out", findings.mean_off_track, lambda value: f"{shown(value, 3)} m"),
-        ("Off heading, held out", findings.mean_off_heading, findings.degrees),
+        ("Off track, held out", mean_off_track, lambda value: f"{shown(value, 3)} m"),
+        ("Off heading, held out", mean_off_heading, findings.degrees),
     ):
         size = mean(record.results, "before")
         if size is not None:
@@ -157,10 +158,10 @@ def _motions(record: DiagnosisRecord) -> Section | None:
     data, rows = record.data, record.results
     words = dict(_RUNS) if data["causes"] else {"measured": "measured", "before": "re-tuned model"}
     if data["causes"]:
-        before, after = (shown(findings.mean_off_track(rows, when), 3) for when in ("before", "after"))
+        before, after = (shown(mean_off_track(rows, when), 3) for when in ("before", "after"))
         caption = f"Mean distance off track: {before} m re-tuned without a cause, {after} m with it."
     else:
-        before = shown(findings.mean_off_track(rows, "before"), 3)
+        before = shown(mean_off_track(rows, "before"), 3)
         caption = f"The re-tuned model is {before} m off track in the mean."
     data_tables = motion_block.numbers(rows, record.motions, words)
     block = motion_block.of_trials(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..how_far_off import rms_errors
 from ..options.learning import ROLES
 from .blocks import Card, Page, Prose, Section, Table, cells
-from .common import banner_of_sources, of_training, picture, rms_errors
+from .common import banner_of_sources, of_training, picture
 from .learned_motions import block
 from .learning_page import (
     MEANING,

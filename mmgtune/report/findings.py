@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..how_far_off import mean_off_track, off_heading, off_track
 from .wording import CHANNELS, change, clean, count, count_of_trials, fixed, listing, number, percent, short, shown
 
 
@@ -25,19 +26,6 @@ def misfit(options: Mapping[str, Any]) -> str:
     )
 
 
-def off_track(row: Mapping[str, Any], when: str) -> float | None:
-    """Root-mean-square distance of a trial's simulated track from the measured one [m]."""
-    rms = row.get("rms") or {}
-    x, y = (number((rms.get(name) or {}).get(when)) for name in ("x", "y"))
-    return None if x is None or y is None else math.hypot(x, y)
-
-
-def off_heading(row: Mapping[str, Any], when: str) -> float | None:
-    """Root-mean-square error of a trial's heading [deg]."""
-    size = number(((row.get("rms") or {}).get("psi") or {}).get(when))
-    return None if size is None else math.degrees(size)
-
-
 def off_track_words(row: Mapping[str, Any], when: str) -> str:
     """How far off a trial is, in metres and degrees; empty where it is not known."""
     distance, heading = off_track(row, when), off_heading(row, when)
@@ -49,18 +37,6 @@ def off_track_words(row: Mapping[str, Any], when: str) -> str:
 def degrees(value: float) -> str:
     """An angle as it is written in sentences: two digits, none after ten degrees."""
     return f"{shown(value, 2)}°"
-
-
-def mean_off_heading(results: Sequence[Mapping[str, Any]], when: str) -> float | None:
-    """The mean error of heading over trials [deg]."""
-    values = [value for row in results if (value := off_heading(row, when)) is not None]
-    return sum(values) / len(values) if values else None
-
-
-def mean_off_track(results: Sequence[Mapping[str, Any]], when: str) -> float | None:
-    """The mean of that over trials."""
-    values = [value for row in results if (value := off_track(row, when)) is not None]
-    return sum(values) / len(values) if values else None
 
 
 def tracks(results: Sequence[Mapping[str, Any]], after_words: str = "after tuning") -> str:

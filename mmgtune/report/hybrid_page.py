@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ..how_far_off import rms_errors
 from . import learned_motions
 from .advice import shortest
 from .blocks import Block, Card, Commands, Page, Prose, Section, Table, cells
-from .common import banner_of_sources, of_training, picture, rms_errors
+from .common import banner_of_sources, of_training, picture
 from .learning_page import made_section
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look

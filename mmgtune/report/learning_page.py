@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ..how_far_off import rms_errors
 from ..inputs import INPUTS
 from ..options.learning import ROLES
 from . import learned_motions
 from .advice import shortest
 from .blocks import Card, Commands, Page, Prose, Section, Table, cells
-from .common import banner_of_sources, made_rows, of_training, options_fold, picture, rms_errors, sources_rows
+from .common import banner_of_sources, made_rows, of_training, options_fold, picture, sources_rows
 from .load import Kind
 from .plot import Axis, Color, Dash, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs

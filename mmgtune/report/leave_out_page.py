@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..how_far_off import mean_off_track, off_track
 from . import advice, codes, findings, measures, motion_block, repeated, tables, tables_of_motion
 from .band_scores import SCORE_HEADS, score_cells
 from .blocks import Card, Commands, Fold, Nothing, Page, Picture, Prose, Section, Table, cells
@@ -135,7 +136,7 @@ def _motions(record: LeaveOutRecord) -> Section | None:
     """Tracks of the trials left out, the worst of them first, and which is the worst and which is as most are."""
     results = record.results
     known = sorted(
-        ((off, row) for row in results if (off := findings.off_track(row, "after")) is not None), key=lambda one: one[0]
+        ((off, row) for row in results if (off := off_track(row, "after")) is not None), key=lambda one: one[0]
     )
     said = "Each trial is simulated with the coefficients that were tuned without it."
     if len(known) > 2:
@@ -170,7 +171,7 @@ def _by_run(results: Sequence[Mapping[str, Any]]) -> list[tuple[str, str, float,
         runs.setdefault(str(row.get("run") or row["id"]), []).append(row)
     found = []
     for run, rows in runs.items():
-        before, after = (findings.mean_off_track(rows, which) for which in ("before", "after"))
+        before, after = (mean_off_track(rows, which) for which in ("before", "after"))
         if before is not None and after is not None:
             found.append((clean(run), clean(rows[0].get("manoeuvre") or ""), before, after))
     return sorted(found, key=lambda one: -one[3])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..how_far_off import mean
 from . import approaches, fans, motion_block, motions
 from .band_indices import banded, indices_table
 from .band_scores import MEANING, MEANING_OF_ONE, known_scores, score_cells
@@ -196,7 +197,7 @@ def _off(record: PredictRecord) -> list[Card]:
             squares["heading"].append(float(np.degrees(np.sqrt(np.nanmean(gaps["psi"] ** 2)))))
     if not squares["place"]:
         return []
-    place_off, heading_off = (sum(values) / len(values) for values in squares.values())
+    place_off, heading_off = (mean(values) for values in squares.values())
     note = f"root mean square of each trial, mean of {count(len(squares['place']), 'trial')}"
     return [
         Card("The mean is off track by" if record.several else "Off track by", f"{shown(place_off, 3)} m", note=note),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..how_far_off import mean
 from ..manoeuvres.named import in_order
 from . import advice, approaches, codes, measures, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
@@ -89,7 +90,8 @@ def _lead(record: SimulationRecord) -> tuple[str, ...]:
 
 def _off(record: SimulationRecord) -> tuple[float | None, float | None]:
     """Mean over runs of the root mean square distance off track [m] and error of heading [deg]."""
-    places, headings = [], []
+    places: list[float] = []
+    headings: list[float] = []
     for found in record.motions.values():
         if "measured" not in found or "simulated" not in found:
             continue
@@ -102,8 +104,7 @@ def _off(record: SimulationRecord) -> tuple[float | None, float | None]:
             error = one - other - motions.turns(one, other)
             if np.isfinite(error).any():
                 headings.append(math.degrees(float(np.sqrt(np.nanmean(error**2)))))
-    means = [sum(values) / len(values) if values else None for values in (places, headings)]
-    return means[0], means[1]
+    return mean(places), mean(headings)
 
 
 def _verdict(record: SimulationRecord, ship: str) -> str:

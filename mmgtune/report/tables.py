@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..how_far_off import off_heading, off_track
 from ..manoeuvres.named import in_order
 from .blocks import Cell, Table, cells
-from .findings import off_heading, off_track
 from .wording import (
     CHANNELS,
     NONE,

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..how_far_off import rms_errors
 from . import advice, codes, measures, motion_block, motions, repeated, tables
 from .band_scores import bands_section
 from .blocks import Block, Card, Commands, Fold, Page, Section, Table, cells
-from .common import doubts, generated_banner, made_table, options_fold, picture, rms_errors
+from .common import doubts, generated_banner, made_table, options_fold, picture
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Look, Mark, Panel, model_look
 from .wording import NONE, Channel, clean, count, model_names, number, sentence, share, shown

@@ -13,6 +13,7 @@ pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[l
 
 from mmgtune.cli.learn import hybrid_summary
 from mmgtune.errors import OptionError
+from mmgtune.how_far_off import rms_errors
 from mmgtune.learning import Hooks, hybrid_run, learn_hybrid, write_learned
 from mmgtune.learning.gains import ratios, relative
 from mmgtune.learning.hybrid import HybridAim, ResidualLoss, balanced, first_residual, ranges_of
@@ -23,7 +24,6 @@ from mmgtune.networks import HybridPredictor, load_network
 from mmgtune.options.learning import HybridOptions
 from mmgtune.profile import load_profile
 from mmgtune.report import render
-from mmgtune.report.common import rms_errors
 from mmgtune.report.hybrid_page import HybridRecord, build
 from mmgtune.report.wording import shown
 from mmgtune.scores import L_MSE
