@@ -22,10 +22,10 @@ from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError, must_be_a, reason
 from .files import hold_regular, path_of
 from .model import Model
+from .parquet_tables import write_table
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
 from .resources import PARTICLES, must_be_name
-from .tables import write_table
 from .trial.footer import rows_of
 from .trial.parquet import numbers as plain_numbers
 

@@ -14,12 +14,12 @@ from .documents import write_json
 from .files import all_or_none, path_of, refuse_existing, write_text
 from .inputs import INPUTS
 from .motions import Motion, motions, orders_of
+from .parquet_tables import write_table
 from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
 from .provenance import made_by
 from .run_folders import MOTIONS
 from .simulating import Simulated
-from .tables import write_table
 from .trial import Trial, TrialSet
 from .validating import Validation
 

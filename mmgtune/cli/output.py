@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from .. import columns
+from .. import text_tables
 from ..displayed import inert
 
 WIDE = 1000
@@ -54,8 +54,8 @@ def limit_width() -> None:
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, less: int = 0, **how: Any) -> list[str]:
-    """Lines of a table that fits the terminal, less some letters; ``how`` as for ``columns.table``."""
-    return columns.table(head, rows, width=width() - less, **how)
+    """Lines of a table that fits the terminal, less some letters; ``how`` as for ``text_tables.table``."""
+    return text_tables.table(head, rows, width=width() - less, **how)
 
 
 def filled(parts: Sequence[str], start: str) -> list[str]:

@@ -10,8 +10,8 @@ from ..errors import must_be_a
 from ..files import all_or_none, path_of, refuse_existing, write_text
 from ..fitting.folder import motions_table
 from ..fitting.journal import finished
+from ..parquet_tables import write_table
 from ..run_folders import MOTIONS
-from ..tables import write_table
 from .calm import calm_profile
 from .result import Diagnosis
 

@@ -17,8 +17,8 @@ from ..files import (
     refuse_existing,
     write_text,
 )
+from ..parquet_tables import write_table
 from ..run_folders import MOTIONS
-from ..tables import write_table
 from .cmaes import Generation
 from .comparison import TrialComparison
 from .journal import finished

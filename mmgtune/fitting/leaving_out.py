@@ -26,6 +26,7 @@ from ..model import Model
 from ..objective import spread
 from ..options import FitOptions, LeaveOutOptions
 from ..options.choice import must_be
+from ..parquet_tables import write_table
 from ..phrases import capital
 from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
@@ -34,7 +35,6 @@ from ..repeating import Repeated, document, repetitions
 from ..run_folders import MOTIONS
 from ..scores import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
 from ..stated import IndexComparison, compare_stated
-from ..tables import write_table
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, another_ship, oddities
 from .amounts import telling

@@ -5,9 +5,9 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from ..columns import table
 from ..displayed import inert
 from ..report.wording import MINUS
+from ..text_tables import table
 from .view import View
 from .words import is_number, words
 

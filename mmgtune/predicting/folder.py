@@ -11,7 +11,7 @@ from ..backends import STATES
 from ..documents import write_json
 from ..errors import must_be_a
 from ..files import all_or_none, path_of, refuse_existing
-from ..tables import write_table
+from ..parquet_tables import write_table
 from .result import Predicted
 
 RESULT = "predict.json"

@@ -14,7 +14,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from ..arrays import runs_of_true
-from ..columns import cut as shortened
+from ..text_tables import cut as shortened
 from . import ticks
 from .plot import DASHES_OF, Area, Axis, Bar, Dots, Figure, Line, Look, Mark, Panel, Rule, Shapes, Words
 

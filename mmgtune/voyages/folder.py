@@ -12,7 +12,7 @@ from ..documents import write_json
 from ..errors import must_be_a
 from ..files import all_or_none, path_of, refuse_existing
 from ..fitting.journal import finished
-from ..tables import write_table
+from ..parquet_tables import write_table
 from ..trial.parquet import GROUP_ROWS
 from .result import VoyageValidation
 

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 import mmgtune
-from mmgtune import columns
+from mmgtune import text_tables
 from mmgtune.cli import at_home
 from mmgtune.effects import effect_tags
 from mmgtune.hooks import Phase
@@ -74,15 +74,17 @@ def test_tables_fit_sixty_columns(tmp_path):
 
 def test_a_table_cuts_words_and_leaves_out_what_is_spare():
     rows = [("a_name_that_is_rather_long", "1.5", "note")]
-    assert columns.table(("name", "x", "more"), rows, words=(0, 2)) == [
+    assert text_tables.table(("name", "x", "more"), rows, words=(0, 2)) == [
         "name                          x  more",
         "a_name_that_is_rather_long  1.5  note",
     ]
-    assert columns.table(("name", "x", "more"), rows, width=32, words=(0, 2), spare=(2,)) == [
+    assert text_tables.table(("name", "x", "more"), rows, width=32, words=(0, 2), spare=(2,)) == [
         "name                          x",
         "a_name_that_is_rather_long  1.5",
     ]
-    assert columns.table(("name", "x"), [("a_name_that_is_rather_long", "1.5")], width=20)[1] == "a_name_…er_long  1.5"
+    assert (
+        text_tables.table(("name", "x"), [("a_name_that_is_rather_long", "1.5")], width=20)[1] == "a_name_…er_long  1.5"
+    )
 
 
 def test_a_profile_is_copied_to_be_changed(tmp_path):

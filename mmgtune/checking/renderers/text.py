@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ... import columns
+from ... import text_tables
 from ...phrases import counted
 from ..result import CheckReport, Item
 from .numbers import change, value
@@ -29,7 +29,7 @@ def render(report: CheckReport, everything: bool = False, width: int = 120) -> s
     rows = rows[: len(rows) if everything else MOST]
     if rows:
         heads = ("trial", "metric", "baseline", "now", "change", "passes", "")
-        table = columns.table(heads, [_row(item) for item in rows], width=width - 1, words=(0, 1, 6), spare=(5, 2))
+        table = text_tables.table(heads, [_row(item) for item in rows], width=width - 1, words=(0, 1, 6), spare=(5, 2))
         lines += [f" {line}" for line in table]
         lines += [f" {unseen} more like these; --all lists them"] if unseen > 0 else []
     quiet = [item for item in report.by_status["ok"] if item.change]

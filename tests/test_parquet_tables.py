@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from mmgtune.errors import OutputError
-from mmgtune.tables import write_table
+from mmgtune.parquet_tables import write_table
 
 COLUMNS = {
     "number": np.array([1.5, np.nan, -0.0]),
