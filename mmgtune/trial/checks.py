@@ -10,7 +10,7 @@ from .control_checks import control_findings
 from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .model import Trial
-from .motion_checks import motion_findings
+from .motion_checks import motion_findings, sway_findings
 from .saturation import saturation_findings, yaw_rate_end
 from .schema import OPTIONAL, known_column
 from .standing import standing_findings
@@ -41,6 +41,7 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
         if end is not None:  # which is why it does not integrate to the heading
             motion = [one for one in motion if one.code != "yaw-rate"]
         found = [
+            *sway_findings(trial, where),
             *standing_findings(trial, where),
             *saturation_findings(trial, where, end),
             *motion,

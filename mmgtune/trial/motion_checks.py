@@ -42,6 +42,9 @@ OF_MIDSHIP = "give positions of midship: [antenna] of the map says where they we
 WANDER = 4
 """Windows so many times longer are looked at where no reading fits: positions that wander miss by less in them."""
 
+TURNED, FEWEST_MOVING = 0.3, 8
+"""Angle [rad] that the heading turns by at least in a trial whose speeds cannot stand still, and samples of it."""
+
 FREER = 2.0
 """What the misfit counts of a reading that has two numbers to choose, among those that have none."""
 
@@ -54,6 +57,23 @@ def motion_findings(trial: Trial, where: str) -> list[Finding]:
         *_spikes(trial, where),
         *_yaw(trial, where),
         *_positions(trial, where),
+    ]
+
+
+def sway_findings(trial: Trial, where: str) -> list[Finding]:
+    """A sway that is the same throughout, in a ship that turns and whose other speeds change: a column filled in."""
+    psi, u, v = (values[np.isfinite(values)] for values in (trial.psi, trial.u, trial.v_m))
+    if min(len(psi), len(u), len(v)) < FEWEST_MOVING or np.ptp(psi) < TURNED or np.ptp(u) == 0.0 or np.ptp(v) > 0.0:
+        return []
+    return [
+        Finding(
+            "warning",
+            f"'v' is {v[0]:.4g} throughout",
+            f"{where}, column 'v'",
+            "a ship that turns drifts: it was filled in, not measured, and 'u' may be the speed over ground",
+            "leave the column out, or mark it as NaN: it counts in no comparison then",
+            "constant",
+        )
     ]
 
 

@@ -1,5 +1,4 @@
-"""Channels of the motion that stand still where the ship moves: a sway that was never measured, logs held between
-updates."""
+"""Channels of the motion that stand still where the ship moves: logs held between updates."""
 
 from __future__ import annotations
 
@@ -10,9 +9,6 @@ from ..phrases import listed
 from .finding import Finding
 from .model import Trial
 from .schema import MOTION
-
-TURNED = 0.3
-"""Angle [rad] that the heading turns by at least in a trial whose speeds cannot stand still."""
 
 LONGEST_STEP = 20.0
 """Samples between two updates up to which a log is told to be held: a channel that stood still for longer was lost."""
@@ -25,28 +21,6 @@ HARDLY = 0.02
 
 
 def standing_findings(trial: Trial, where: str) -> list[Finding]:
-    """That there is no sway throughout, and that positions stand still between updates."""
-    return [*_without_sway(trial, where), *_held(trial, where)]
-
-
-def _without_sway(trial: Trial, where: str) -> list[Finding]:
-    """A sway that is the same throughout, in a ship that turns and whose other speeds change: a column filled in."""
-    psi, u, v = (values[np.isfinite(values)] for values in (trial.psi, trial.u, trial.v_m))
-    if min(len(psi), len(u), len(v)) < FEWEST or np.ptp(psi) < TURNED or np.ptp(u) == 0.0 or np.ptp(v) > 0.0:
-        return []
-    return [
-        Finding(
-            "warning",
-            f"'v' is {v[0]:.4g} throughout",
-            f"{where}, column 'v'",
-            "a ship that turns drifts: it was filled in, not measured, and 'u' may be the speed over ground",
-            "leave the column out, or mark it as NaN: it counts in no comparison then",
-            "constant",
-        )
-    ]
-
-
-def _held(trial: Trial, where: str) -> list[Finding]:
     """Positions that stand still for several samples and then jump, again and again, while the ship makes way."""
     moves = (np.diff(trial.x) != 0.0) | (np.diff(trial.y) != 0.0)
     known = np.isfinite(trial.x[1:]) & np.isfinite(trial.x[:-1])
