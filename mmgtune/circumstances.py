@@ -86,7 +86,7 @@ def notes(
     free: Collection[str] = (),
     of: str = "trial",
 ) -> list[str]:
-    """The same of surroundings (n_samples, n_surroundings) as the model has them, by trial or what else they are of."""
+    """What a reader should know of surroundings (n_samples, n_surroundings), by trial or what else they are of."""
     numbers = {**model.numbers(), **(values or {})}
     measured = {name: _known(rows) for name, rows in around.items()}
     said = [

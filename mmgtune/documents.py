@@ -37,7 +37,7 @@ def finite(value: float | None) -> float | None:
 
 
 def finite_values(values: Mapping[str, float | None]) -> dict[str, float | None]:
-    """The same of numbers by name."""
+    """Numbers by name, None for those that JSON has no word for."""
     return {name: finite(value) for name, value in values.items()}
 
 

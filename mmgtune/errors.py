@@ -223,5 +223,5 @@ def reason(error: BaseException) -> str:
 
 
 def cannot_write_reason(error: OSError) -> str:
-    """The same of something that was to be written, with the place."""
+    """Why something could not be written, in one short line, with the place."""
     return f"{reason(error)}: {error.filename}" if error.filename else reason(error)

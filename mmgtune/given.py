@@ -73,7 +73,7 @@ def list_of(given: TrialsGiven) -> list[Trial]:
 
 
 def some_of(given: TrialsGiven) -> list[Trial]:
-    """The same where there is one at least.  Raises TrialError for none."""
+    """The trials of a data set, in its order, or those of a list: one at least.  Raises TrialError for none."""
     several = list_of(given)
     if not several:
         raise TrialError(_NONE)

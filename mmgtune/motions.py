@@ -119,7 +119,7 @@ def simulate_trials(
 
 
 def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray | None = None) -> Iterator[Motion]:
-    """The same one after the other, so that no more is held than is being looked at.
+    """Trials simulated with their measured inputs, one after the other: no more is held than is being looked at.
 
     offsets  (n_trials, 6) added to the first measured states
     """
@@ -216,7 +216,7 @@ def _track(trial: Trial, longest: float) -> Track:
 
 
 def track_if_whole(trial: Trial) -> Track | None:
-    """The same, None where there is no record to read indices from: gaps, a heading that jumps, too few samples."""
+    """The measured track; None where no indices can be read from it: gaps, jumps of the heading, few samples."""
     try:
         return track_of(trial)
     except TrialError:

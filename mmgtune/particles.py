@@ -124,7 +124,7 @@ class ParticlePredictor(PhysicsPredictor):
 
     @property
     def doubted(self) -> tuple[str, ...]:
-        """That of the particles."""
+        """What is doubted of the particles."""
         return self.particles.doubted if self.particles is not None else ()
 
     def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> PhysicsPredictor:

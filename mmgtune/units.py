@@ -235,7 +235,7 @@ def example(unit: str) -> str:
 
 
 def example_in_toml(unit: str, low: float | None = None, high: float | None = None) -> str:
-    """The same as TOML has it, a number between limits (exclusive) that there may be."""
+    """How a quantity of this unit is written in TOML: a number between limits (exclusive), where there are any."""
     number = EXAMPLE
     if (low is not None and number <= low) or (high is not None and number >= high):
         below = low if low is not None else min(0.0, 2.0 * (high or 0.0)) - 1.0

@@ -185,7 +185,7 @@ class LaneModel:
         return LaneRun(self, self.unsensed(shown), logged, around)
 
     def under_way(self, shown: State, logged: Any, around: Surroundings = UNKNOWN) -> LaneRun:
-        """The same where inputs become known as they come, and so reach the ship after her dead time."""
+        """A run, begun as by ``start``, whose inputs become known as they come: they act after the dead time."""
         return (
             LateRun(self, shown, logged, around)
             if any(d is not None for d in self.dead_time)

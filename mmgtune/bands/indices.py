@@ -38,7 +38,7 @@ class IndexBand:
         return 0.5 * (self.high - self.low)
 
     def times(self, factor: float) -> IndexBand:
-        """The same in another unit, of which a number is ``factor`` times as large."""
+        """The band in another unit, in which a number is ``factor`` times as large."""
 
         def scaled(value: float | None) -> float | None:
             return None if value is None else factor * value

@@ -267,7 +267,7 @@ class FitResult(Plotted):
         return [one.words for one in self.warned()]
 
     def warned(self) -> list[Warned]:
-        """The same with the code of each."""
+        """What a reader must know before trusting the numbers, each with its code."""
         found = []
         if self.interrupted:
             said = "The fit was interrupted; these are the best values so far, not an optimum."

@@ -127,7 +127,7 @@ class SweepResult(Plotted):
         return [one.words for one in self.warned()]
 
     def warned(self) -> list[Warned]:
-        """The same with the code of each."""
+        """What a reader must know first, each with its code."""
         return self.runs[-1 if self.interrupted else self.best].warned()
 
     def overfitting(self) -> dict[str, Any]:

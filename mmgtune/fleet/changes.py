@@ -77,7 +77,7 @@ class Course:
     fitted: FloatArray
 
     def exponential(self) -> Course:
-        """The same of exp(y): steps, slope and errors to first order, where each stands."""
+        """The course of exp(y), for that of y: steps, slope and errors to first order, where each stands."""
 
         def of(change: Change) -> Change:
             behind = math.exp(self.fitted[change.after])

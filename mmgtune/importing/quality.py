@@ -92,7 +92,7 @@ Told = tuple[str, str]
 
 
 def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: MutableSet[Told] | None = None) -> str:
-    """The same for people.
+    """The quality of one trial, as lines for people.
 
     common  notes that are said elsewhere
     told    reasons and fixes that were given before, which are not said again; those given here are added

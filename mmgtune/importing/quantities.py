@@ -91,7 +91,7 @@ def quantity_of(name: str) -> Quantity | None:
 
 
 def known_quantity(name: str) -> Quantity:
-    """The same of a name that is known to be one."""
+    """A quantity by a name that is known to be one, one of a layer of the water too."""
     found = quantity_of(name)
     assert found is not None
     return found

@@ -44,7 +44,7 @@ class Series:
     coarse: FloatArray | None = None
 
     def at(self, rows: BoolArray) -> Series:
-        """The same at some of its rows (n_samples,)."""
+        """The samples at some rows (n_samples,)."""
         printed, coarse = (None if one is None else one[rows] for one in (self.printed, self.coarse))
         return Series(self.t[rows], self.values[rows], printed, coarse)
 

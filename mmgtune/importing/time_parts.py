@@ -88,7 +88,7 @@ def together(parts: Mapping[str, FloatArray]) -> FloatArray:
 
 
 def going_on(parts: Mapping[str, FloatArray], periods: Periods) -> FloatArray:
-    """The same without the falls at midnight, or after the hour where parts begin with minutes."""
+    """Seconds (n_rows,) of parts by their unit that go on over midnight, or the hour where parts begin with minutes."""
     t, first = together(parts), next(iter(parts))
     if first == "h":
         return periods.over_midnight(t)

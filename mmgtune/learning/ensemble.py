@@ -62,7 +62,7 @@ class EnsembleAim:
         self._judge = jax_module().jit(self.loss)
 
     def of(self, standards: MemberStandards) -> EnsembleAim:
-        """The same for a member with these standards."""
+        """The aim of a member with these standards."""
         found = copy(self)
         given = jax_module().tree.map(lambda one: jax_module().numpy.asarray(one, dtype=Single), standards)
         found.data = {**self.data, "standards": given}

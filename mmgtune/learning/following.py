@@ -135,7 +135,7 @@ def driven(ship: LaneModel, of: Followed) -> FloatArray:
 
 
 def thinned(counts: BoolArray, most: int) -> BoolArray:
-    """The same with no more than about ``most`` left, evenly."""
+    """Some of the samples that count (n,): about ``most`` at most, evenly spread."""
     there = np.flatnonzero(counts)
     kept = np.zeros(counts.size, dtype=bool)
     kept[there[:: max(1, -(-len(there) // most))]] = True

@@ -37,7 +37,7 @@ def provenance_of(
 
 
 def travelling(provenance: dict[str, Any]) -> dict[str, Any]:
-    """The same for a file that others get: names in place of paths, and no command, which may hold some."""
+    """Provenance for a file that others get: names in place of paths, and no command, which may hold some."""
     found = {key: value for key, value in provenance.items() if key != "command"}
     for part in ("profile", "trials"):
         found[part] = {**found[part], "path": Path(found[part]["path"]).name}

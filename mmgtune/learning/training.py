@@ -128,7 +128,7 @@ class Trainer:
         self.update = jax.jit(update, compiler_options={"xla_cpu_multi_thread_eigen": False} if alone else None)
 
     def on(self, aim: Aim) -> Trainer:
-        """The same compiled step for an aim that differs from the first in its data alone."""
+        """A trainer with this one's compiled step, for an aim that differs in its data alone."""
         other = copy(self)
         other.aim = aim
         return other
@@ -269,7 +269,7 @@ def standing(now: Progressed, good: Progressed) -> Progressed:
 
 
 def copied(one: Progressed) -> Progressed:
-    """The same with lists of its own; arrays are never written into."""
+    """A copy with lists of its own; arrays are never written into."""
     return Progressed(
         one.parameters,
         one.state,

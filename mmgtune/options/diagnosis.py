@@ -59,6 +59,6 @@ class DiagnoseOptions(SimulationOptions):
         return found
 
     def fit_options(self) -> FitOptions:
-        """The same choices as a fit knows them."""
+        """The choices that a fit knows too, as its options."""
         shared = {name: value for name, value in self.shared_with(FitOptions).items() if name != "channels"}
         return FitOptions(**shared, method="least-squares", initial="estimated")

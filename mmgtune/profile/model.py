@@ -85,7 +85,7 @@ class SteeringGear:
 
     @property
     def actuator(self) -> Actuator:
-        """The same limits as an actuator has them."""
+        """Its limits as those of an actuator."""
         return Actuator(-self.max_angle, self.max_angle, self.rate)
 
 

@@ -35,14 +35,14 @@ def legend(orders: Mapping[str, Mapping[str, Any]]) -> tuple[tuple[str, str], ..
 
 
 def of_rows(rows: Iterable[Mapping[str, Any]]) -> tuple[tuple[str, str], ...]:
-    """The same of rows of trials; those of older versions have only their measured indices, none where there is a
-    gap."""
+    """Kinds of manoeuvres, each with its trials, of rows of trials; rows of older versions have only their measured
+    indices, none where there is a gap."""
     measured = {str(row["id"]): row.get("order") or (row.get("indices") or {}).get("measured") or {} for row in rows}
     return legend(measured)
 
 
 def sentences(orders: Mapping[str, Mapping[str, Any]]) -> tuple[str, ...]:
-    """The same where there is no table to stand below."""
+    """Kinds of manoeuvres, each with its trials, as sentences where there is no table to stand below."""
     return tuple(f"{kind[:1].upper()}{kind[1:]}: {names}." for kind, names in legend(orders))
 
 

@@ -22,7 +22,7 @@ def render(page: Page) -> str:
 
 
 def fragment(page: Page) -> str:
-    """The same blocks as a piece of another page, such as a notebook: without script, styles of its own alone."""
+    """The blocks of a report as a piece of another page, such as a notebook: no script, styles of its own alone."""
     return _rendered("fragment.html.j2", page, [])
 
 

@@ -131,7 +131,7 @@ class Coverage:
 
     @classmethod
     def of(cls, trials: Iterable[Sailed], L_pp: float) -> Coverage:
-        """That of trials; NaN where a channel was never measured, and without trials.  L_pp [m]."""
+        """What trials cover; NaN where a channel was never measured, and without trials.  L_pp [m]."""
         seen = visited_by(trials, L_pp)
         return cls(*(seen.span(getattr(seen, name)) for name in ("rudder", "rate", "drift", "speed", "ahead")))
 

@@ -132,7 +132,7 @@ class TrialSet(Plotted):
         )
 
     def in_windows(self, length: float, every: float | None = None) -> TrialSet:
-        """The same set with every trial cut into windows of ``length`` [s]; each has the role of its trial.
+        """The set with every trial cut into windows of ``length`` [s]; each has the role of its trial.
 
         every  time between samples that count [s], None for all: each window has one at least, if its trial has
         """

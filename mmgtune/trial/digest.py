@@ -18,7 +18,7 @@ def digest(columns: Mapping[str, FloatArray], facts: bytes) -> bytes:
 
 
 def digest_of(columns: Iterable[tuple[str, int, Iterable[FloatArray]]], facts: bytes) -> bytes:
-    """The same of columns that come in parts: name, number of samples, and the parts in order."""
+    """The digest of columns that come in parts: name, number of samples, and the parts in order."""
     found = hashlib.sha256(len(facts).to_bytes(8, "little") + facts)
     for name, n_samples, parts in columns:
         raw = name.encode("utf-8", "surrogatepass")

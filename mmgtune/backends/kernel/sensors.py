@@ -40,7 +40,7 @@ def settled(model: Model) -> list[str]:
 
 
 def filtered(model: Model) -> list[str]:
-    """The same a step later: what reached each filter before is what the one before it logged."""
+    """What sensors show of lane l and filters log a step later: each was reached by what the one before it logged."""
     filters = model.acting(FilterEffect)
     if not filters:
         return []

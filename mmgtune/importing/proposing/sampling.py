@@ -87,12 +87,12 @@ class Sample:
         return f"{self.path}, '{self.part}'" if self.part else str(self.path)
 
     def turned_round(self) -> Sample:
-        """The same with the rows in the other order."""
+        """The sample with its rows in the other order."""
         texts = [one[::-1].reset_index(drop=True) for one in self.texts]
         return replace(self, texts=texts, numbers=[one[::-1] for one in self.numbers])
 
     def in_order(self, other: Sample) -> Sample:
-        """The same with its columns in the order of another sample; as it is where names do not tell them all."""
+        """The sample with its columns in the order of another one; as it is where names do not tell them all."""
         names = [one.strip() for one in other.names]
         own = [one.strip() for one in self.names]
         if sorted(own) != sorted(names) or any(isinstance(other.reference(k), int) for k in range(len(names))):
@@ -100,7 +100,7 @@ class Sample:
         return self.only(names)
 
     def divided(self, k: int, halves: Sequence[FloatArray]) -> Sample:
-        """The same with a column whose cells hold two numbers (n_rows,) each as two, the second behind all others."""
+        """The sample with a column whose cells hold two numbers (n_rows,) as two columns, the second behind all."""
         last = len(self.names)
         numbers = [halves[0] if i == k else one for i, one in enumerate(self.numbers)]
         return replace(
@@ -114,7 +114,7 @@ class Sample:
         )
 
     def only(self, names: Sequence[str]) -> Sample:
-        """The same with columns of these names alone, in their order."""
+        """The sample with columns of these names alone, in their order."""
         own = [one.strip() for one in self.names]
         moved = [own.index(name) for name in names]
         return replace(
