@@ -1,9 +1,13 @@
 """Sentences are for people: no code of the program reads them to know what to do."""
 
 import ast
+import copy
+import json
 from pathlib import Path
 
 import mmgtune
+from mmgtune.hooks import Phase
+from mmgtune.trial.finding import Rescale
 
 TEXTS = {"what", "why", "where", "fix"}
 """Attributes of problems and findings that hold sentences."""
@@ -67,3 +71,10 @@ def test_what_counts_as_reading_them():
     assert readings("if phase.startswith('looking for'): pass") == [1]
     assert readings("np.where(a > b, a, b) > 0.0") == []
     assert readings("replace(problem, fix=other)") == []
+
+
+def test_words_keep_what_they_carry_and_are_written_as_words():
+    for words, key in ((Rescale("divide 'r' by 60", "r"), "column"), (Phase("looking for cause 2", look=2), "look")):
+        again = copy.deepcopy(words)
+        assert (again, getattr(again, key)) == (words, getattr(words, key))
+        assert json.dumps(words) == json.dumps(str(words))

@@ -56,9 +56,10 @@ OVER_TIME = ("psi", "u", "v_m", "r")
 """Motions shown over time; positions are seen in the tracks."""
 
 ROLES = {"tune": "tuned on", "test": "test", "other": "not used", "left-out": "left out"}
-"""Trials by what they are to a fit, in words; and in full, those not tuned on first."""
+"""Trials by what they are to a fit, beside their names."""
 
 TRIALS_OF_ROLE = {"test": "test trials", "left-out": "trials left out in turn", "tune": "trials tuned on"}
+"""Trials by what they are to a fit, in sentences; those not tuned on first, as what is said of them counts most."""
 
 
 def input_channel(name: str, words: str, unit: str) -> Channel:

@@ -4,6 +4,7 @@ import numpy as np
 import openpyxl
 import pytest
 
+from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, parse_map, propose_map
 from mmgtune.units import DEG
 from tests.command import run
@@ -165,3 +166,14 @@ def test_what_cannot_be_read_is_told(tmp_path):
     told = refusal(lambda: import_logs([text], propose_map(tmp_path / "good.xlsx").map(), ".", dry_run=True))
     assert "it is no .xlsx file" in told
     assert "there are no rows in it" in refusal(lambda: propose_map(book(tmp_path / "empty.xlsx", log=[])))
+
+
+def test_a_refusal_names_the_sheet_once(tmp_path):
+    """Also where a column is called as the sheet, and where the place names the sheet by itself."""
+    log_map = propose_map(book(tmp_path / "good.xlsx", Rudder=rows(TURN), zigzag=rows(ZIGZAG))).map()
+    damaged = [row if k == 0 else [*row[:-1], "lost"] for k, row in enumerate(rows(TURN))]
+    for cells, ends in ((damaged, "column 'Rudder', in 'Rudder'"), ([row[:-1] for row in damaged], "'Rudder', row 1")):
+        log = book(tmp_path / "damaged.xlsx", Rudder=cells, zigzag=rows(ZIGZAG))
+        with pytest.raises(LogError) as error:
+            import_logs([log], log_map, ".", dry_run=True)
+        assert [one.where.endswith(ends) for one in error.value.problems] == [True], error.value
