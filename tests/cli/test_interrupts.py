@@ -130,7 +130,7 @@ fitting.fit = interrupted
     assert list((tmp_path / "run").iterdir()) == []
 
 
-@pytest.mark.daily("1")
+@pytest.mark.long
 @pytest.mark.parametrize("times", [1, 2])
 def test_bands_that_are_stopped_are_named(tmp_path, times):
     """Of a fit that is complete; --resume draws them."""
