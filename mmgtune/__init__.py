@@ -38,7 +38,17 @@ def __getattr__(name: str) -> object:
 
         return own_version()
     get, _, names = _attached()
-    return names if name == "__all__" else get(name)
+    if name == "__all__":
+        return names
+    try:
+        return get(name)
+    except AttributeError:
+        if name.startswith("_"):
+            raise
+        from .errors import near_to
+
+        near = near_to(name, names)
+        raise AttributeError(f"mmgtune has no '{name}'{f'; {near}' if near else ''}") from None
 
 
 def __dir__() -> list[str]:

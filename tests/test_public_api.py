@@ -47,6 +47,32 @@ def test_what_is_given_in_the_wrong_place_is_told_what_to_write(call, said):
     assert said in str(caught.value)
 
 
+def test_a_name_that_there_is_not_is_told_what_is_meant():
+    with pytest.raises(AttributeError, match="mmgtune has no 'load_trial'; did you mean 'load_trials'"):
+        mmgtune.load_trial  # noqa: B018
+    with pytest.raises(AttributeError, match=r"^mmgtune has no 'qqqqqq'$"):
+        mmgtune.qqqqqq  # noqa: B018
+    assert not hasattr(mmgtune, "_repr_html_")
+
+
+def test_a_set_made_of_trials_alone_tunes_to_those_that_do_not_test():
+    trials = [mmgtune.load_trials("suzaku")[id] for id in ("turn_p35", "turn_m35")]
+    assert mmgtune.TrialSet(trials).tune == ("turn_p35", "turn_m35")
+    some = mmgtune.TrialSet(trials, test=["turn_p35"])
+    assert (some.tune, some.test) == (("turn_m35",), ("turn_p35",))
+    assert mmgtune.TrialSet(trials, tune=["turn_p35"]).others == ("turn_m35",)
+
+
+def test_a_predicted_run_is_had_by_its_id_and_a_check_names_its_trials():
+    trial = mmgtune.load_trials("suzaku")["turn_p35"]
+    found = mmgtune.predict("suzaku", trial)
+    assert found["turn_p35"] is found.runs[0]
+    with pytest.raises(mmgtune.MmgtuneError, match="did you mean 'turn_p35'"):
+        found["turn_p36"]
+    report = mmgtune.check("suzaku", trial, mmgtune.record_baseline("suzaku", trial))
+    assert repr(report) == "CheckReport(suzaku on trials: pass)"
+
+
 def test_a_fit_in_the_place_of_trials_is_told_of_lists():
     few = mmgtune.FitOptions(a_r=0.5, method="least-squares", starts=1, targets=("hull.R_0",))
     result = mmgtune.fit("suzaku", "suzaku", few)

@@ -128,7 +128,7 @@ def check(
     ]
     return CheckReport(
         profile=names[0] or ship.id,
-        trials=names[1],
+        trials=names[1] or str(trials.path or "trials"),
         baseline=names[2],
         profile_file=ship.path,
         sha256=ship.sha256,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from ..hooks import EVALUATIONS, Hooks
 from .problem import FitProblem
 
-USUAL_ITERATIONS = 30
+USUAL_ITERATIONS = 40
 """Iterations of least squares from one start that are seldom exceeded."""
 
 

@@ -13,6 +13,7 @@ from ..arrays import BoolArray, FloatArray
 from ..backends import STATES
 from ..bands import IndexBand, Pooled, WindowScore, covariances, fan, index_band, pooled, widest
 from ..displayed import Plotted, inert
+from ..errors import OptionError, Problem, among, brief
 from ..manoeuvres.named import BY_KEY
 from ..options import PredictOptions
 from ..phrases import counted
@@ -137,6 +138,13 @@ class Predicted(Plotted):
         """In a line."""
         shown = ", ".join(one.id for one in self.runs[:4]) + (" ..." if len(self.runs) > 4 else "")
         return inert(f"Predicted({self.name[-60:]}, {counted(self.predictor.n_members, 'particle')}: {shown})")
+
+    def __getitem__(self, id: str) -> Foretold:
+        """The run of that id.  Raises OptionError where there is none."""
+        found = [one for one in self.runs if one.id == id]
+        if not found:
+            raise OptionError(Problem(f"no run {brief(id)}", "predicted", **among(id, [one.id for one in self.runs])))
+        return found[0]
 
     @property
     def level(self) -> float:

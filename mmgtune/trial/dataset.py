@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from ..displayed import Plotted, inert
-from ..errors import Problem, TrialError, among, brief, closest, kind_of
+from ..errors import Problem, TrialError, all_of, among, brief, closest, kind_of
 from ..phrases import counted
 from ..resources import folder, looked_for, must_be_name, profile_names, taken, trial_set_names
 from .by_hand import Given, roles_of, ship_of_all, trials_by_id
@@ -28,7 +28,8 @@ class TrialSet(Plotted):
     """Trials by id, in the order of their file names.  One may be made by hand: ``TrialSet([a, b], ["a"], ["b"])``.
 
     trials      by id; a list of them will do, in which those of stated indices may stand too
-    tune, test  ids of ``trials``, in the order of the split; without a split all trials tune
+    tune, test  ids of ``trials``, in the order of the split; without a split all trials tune, and of a set made by hand
+                all that do not test where ``tune`` is left out
     stated      trials of which only indices are known, by id; tune_stated, test_stated their ids likewise; those that
                 are named in tune and test are put there
     ship        id of the ship, "" where neither split nor files say; where it is not given the one that trials name
@@ -55,8 +56,8 @@ class TrialSet(Plotted):
     def __init__(
         self,
         trials: Given,
-        tune: Iterable[str],
-        test: Iterable[str],
+        tune: Iterable[str] | None = None,
+        test: Iterable[str] = (),
         ship: str = "",
         path: Path | None = None,
         licence: str = "",
@@ -66,6 +67,11 @@ class TrialSet(Plotted):
         test_stated: Iterable[str] = (),
     ) -> None:
         series, indices = trials_by_id(trials, stated)
+        test, test_stated = all_of(test, str, "test"), all_of(test_stated, str, "test_stated")
+        if tune is None:
+            tune_stated = all_of(tune_stated, str, "tune_stated")
+            elsewhere = {*test, *test_stated, *tune_stated}
+            tune = [name for name in (*series, *indices) if name not in elsewhere]
         ids = {"tune": tune, "test": test, "tune_stated": tune_stated, "test_stated": test_stated}
         roles = roles_of(ids, [*series, *indices])
         ship = ship or ship_of_all([*series.values(), *indices.values()])

@@ -124,7 +124,7 @@ def test_simulate_gives_the_same_turn_and_nearly_the_same_zigzag(ship):
 def test_without_orders_the_usual_manoeuvres(kvlcc2):
     found = predict(kvlcc2)
     assert [one.id for one in found.runs] == ["turn_p35", "turn_m35", "zigzag_p10_10", "zigzag_p20_20"]
-    assert repr(found) == "Predicted(kvlcc2_l7, 1 particles: turn_p35, turn_m35, zigzag_p10_10, zigzag_p20_20)"
+    assert repr(found) == "Predicted(kvlcc2_l7, 1 particle: turn_p35, turn_m35, zigzag_p10_10, zigzag_p20_20)"
 
 
 def test_a_particle_goes_as_if_alone(kvlcc2, five, turned):

@@ -173,7 +173,7 @@ def test_a_single_trial_and_stated_indices_are_put_where_they_belong() -> None:
         (("suzaku", ["a"], []), OptionError, ["a str is no set of trials"]),
         (([A], "a", []), OptionError, ["tune is 'a'"]),
         (([A], [A], []), OptionError, ["a Trial in tune is no text"]),
-        (([A], None, []), OptionError, ["tune is None"]),
+        (([A], ["a"], None), OptionError, ["test is None"]),
     ],
 )
 def test_what_makes_no_set_is_told(given: tuple, error: type[MmgtuneError], said: list[str]) -> None:
