@@ -2,7 +2,7 @@
 
     import mmgtune
     result = mmgtune.fit("suzaku", "suzaku", mmgtune.FitOptions(a_r=0.5))
-    print(result.verdict())
+    print(result.sentence())
 
 What there is stands in ``__init__.pyi``: what the commands call, imported when first used.
 """

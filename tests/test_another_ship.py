@@ -30,7 +30,7 @@ def others(own):
 
 def test_a_fit_says_so(own, others):
     told = mmgtune.fit("suzaku", others, QUICK)
-    assert f"T{SAID[1:]}." in told.warnings()
+    assert f"T{SAID[1:]}." in told.warnings
     assert "another-ship" in told.to_dict()["warning_codes"]
     assert "T" + SAID[1:] in told.summary().replace("\n", " ")
     silent = mmgtune.fit("suzaku", own, QUICK)
@@ -39,7 +39,7 @@ def test_a_fit_says_so(own, others):
 
 def test_a_list_of_trials_says_so_as_a_set_does(others):
     told = mmgtune.fit("suzaku", list(others), QUICK)
-    assert f"T{SAID[1:]}." in told.warnings()
+    assert f"T{SAID[1:]}." in told.warnings
 
 
 def test_others_that_learn_from_trials_say_so(own, others):
@@ -47,13 +47,13 @@ def test_others_that_learn_from_trials_say_so(own, others):
     sweep = mmgtune.SweepOptions(widths=(0.5,), method="least-squares", starts=1, targets=("hull.R_0",))
     left_out = mmgtune.LeaveOutOptions(a_r=0.5, starts=1, targets=("hull.R_0",))
     told = [
-        mmgtune.sweep("suzaku", others, sweep).warnings(),
+        mmgtune.sweep("suzaku", others, sweep).warnings,
         mmgtune.leave_out("suzaku", others, left_out).warnings,
-        mmgtune.posterior("suzaku", others, few).warnings(),
-        mmgtune.posterior("suzaku", list(others), few).warnings(),
+        mmgtune.posterior("suzaku", others, few).warnings,
+        mmgtune.posterior("suzaku", list(others), few).warnings,
     ]
     assert all(f"T{SAID[1:]}." in one for one in told)
-    assert not any("are of" in one for one in mmgtune.posterior("suzaku", own, few).warnings())
+    assert not any("are of" in one for one in mmgtune.posterior("suzaku", own, few).warnings)
 
 
 def test_a_diagnosis_and_a_check_say_so(own, others):

@@ -99,7 +99,7 @@ def test_from_profile_to_verdict(tmp_path):
     profile = mmgtune.load_profile("suzaku")
     trials = mmgtune.load_trials("suzaku")
     result = mmgtune.fit(profile, trials, mmgtune.FitOptions(a_r=0.5, method="least-squares", starts=2))
-    assert "4 of 4 of these trials improve" in result.verdict()
+    assert "4 of 4 of these trials improve" in result.sentence()
     motion = mmgtune.simulate(result.tuned_profile(), [trials.trials["turn_p35"]])[0]
     assert not motion.diverged
     assert mmgtune.Model(result).profile.text == result.tuned_profile().text
@@ -110,14 +110,14 @@ def test_from_profile_to_verdict(tmp_path):
     report = mmgtune.render(tmp_path / "run")[0]
     assert report.name == "report.html"
     off = re.match(
-        r"On 4 trials not used .* is ([\d.]+ m) off track and ([\d.]+°) off heading instead", result.verdict()
+        r"On 4 trials not used .* is ([\d.]+ m) off track and ([\d.]+°) off heading instead", result.sentence()
     )
     assert off is not None  # the sentence begins with what a seaman can picture, and with the numbers of the cards
     assert all(f"→ {size}" in report.read_text(encoding="utf-8") for size in off.groups())
     one, *others = result.compared
     lost = replace(one.records["after"], motion=replace(one.motions["after"], diverged=True))
     failed = replace(one, role="test", records={**one.records, "after": lost})
-    worse = replace(result, compared=[failed, *others]).verdict()
+    worse = replace(result, compared=[failed, *others]).sentence()
     assert "; it diverges on 1 of " in worse  # and not that there were no test trials
     assert "no test trials" not in worse
 

@@ -199,9 +199,9 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
     if result.beside:
         lines += ["", *result.beside.words()]
     lines += ["", *result.certificate.sentences[:2], *map(in_flags, result.identifiability.sentences[:2])]
-    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
+    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     if result.compared and result.coverage.to_dict():
         lines += ["", result.coverage.sentence]
-    lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]
+    lines += ["", result.sentence(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

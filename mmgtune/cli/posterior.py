@@ -60,5 +60,5 @@ def command(
 
 def summary(result: Posterior, folder: Path) -> str:
     """What a person wants to read in a terminal."""
-    lines = [*result.sentences(), *(f"Note: {warning}" for warning in result.warnings())]
+    lines = [*result.sentences(), *(f"Note: {warning}" for warning in result.warnings)]
     return "\n".join([*lines, f"{counted(len(result.particles), 'particle')}: {folder}/particles.parquet"])

@@ -99,7 +99,7 @@ def summary(result: SweepResult, folder: str, report: bool) -> str:
     if before:
         lines.append(f"J before, {result.runs[0].method}: {', '.join(before.values())}")
     lines += ["", "* on a bound", ""]
-    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
+    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     lines += [result.recommended()["sentence"], result.overfitting()["sentence"]]
     lines.append(
         f"{'Interrupted after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s. "

@@ -204,7 +204,7 @@ class FitResult(Plotted):
         """How trials were simulated, to be named beside J."""
         return words_of(self.options.make_integrator())
 
-    def verdict(self) -> str:
+    def sentence(self) -> str:
         """The result in one sentence, after one that says so where the fit was stopped."""
         return f"{STOPPED} {self._verdict()}" if self.interrupted else self._verdict()
 
@@ -212,7 +212,7 @@ class FitResult(Plotted):
         tests = [c for c in self.compared if c.role == "test"]
         chosen = tests or [c for c in self.compared if c.role == "tune"]
         if not chosen:
-            return self.verdict_of_stated()
+            return self.sentence_of_stated()
         trials = counted_trials(chosen)
         said = [f"On {trials} not used for tuning" if tests else f"On the {trials} it was tuned to"]
         said[0] += f", the tuned {self.profile.name}"
@@ -250,7 +250,7 @@ class FitResult(Plotted):
         size = f"falls by {min(-change, 99.9):.1f} %" if change < 0 else f"rises by {change:.1f} %"
         return f"{size}, from {before:.4g} to {after:.4g}"
 
-    def verdict_of_stated(self) -> str:
+    def sentence_of_stated(self) -> str:
         """Change of the errors of stated indices, in one sentence."""
         tests = [one for one in self.stated if one.role != "tune"]
         chosen = tests or self.stated
@@ -262,9 +262,10 @@ class FitResult(Plotted):
             f"root mean square, instead of {before:.2f}{last}"
         )
 
-    def warnings(self) -> list[str]:
+    @property
+    def warnings(self) -> tuple[str, ...]:
         """What a reader must know before trusting the numbers."""
-        return [one.words for one in self.warned()]
+        return tuple(one.words for one in self.warned())
 
     def warned(self) -> list[Warned]:
         """What a reader must know before trusting the numbers, each with its code."""
@@ -312,7 +313,7 @@ class FitResult(Plotted):
             said = f"{assumed} of {len(self.stated)} stated indices have the tolerance that mmgtune assumes."
             found.append(Warned("assumed", said))
         if self.stated and self.compared:
-            found.append(Warned("stated", self.verdict_of_stated()))
+            found.append(Warned("stated", self.sentence_of_stated()))
         return found
 
     def _of_comparison(self) -> list[Warned]:
@@ -411,7 +412,7 @@ class FitResult(Plotted):
             "kind": "fit",
             **self.provenance,
             "interrupted": self.interrupted,
-            "verdict": self.verdict(),
+            "verdict": self.sentence(),
             "warnings": [one.words for one in warned],
             "warning_codes": [one.code for one in warned],
             "doubts": [one.to_dict() for one in self.profile.doubts()],

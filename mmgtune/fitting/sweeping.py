@@ -122,9 +122,10 @@ class SweepResult(Plotted):
             f"(root mean square); {J}."
         )
 
-    def warnings(self) -> list[str]:
+    @property
+    def warnings(self) -> tuple[str, ...]:
         """What a reader must know first: of the best fit, or of the last where the sweep was stopped."""
-        return [one.words for one in self.warned()]
+        return tuple(one.words for one in self.warned())
 
     def warned(self) -> list[Warned]:
         """What a reader must know first, each with its code."""
@@ -222,7 +223,7 @@ class SweepResult(Plotted):
             if loo is None
             else [{"a_r": a, "J": J} for a, J in zip(self.widths, loo, strict=True)],
             "overfitting": self.overfitting(),
-            "warnings": self.warnings(),
+            "warnings": list(self.warnings),
             "warning_codes": [one.code for one in self.warned()],
             "doubts": [one.to_dict() for one in first.profile.doubts()],
             "citations": first.profile.cites(),

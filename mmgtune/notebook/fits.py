@@ -29,8 +29,8 @@ BOUND = {"low": "lower", "high": "upper"}
 def fit(result: FitResult) -> View:
     """A row a coefficient: value, standard error, box, and what is to be known of it."""
     return View(
-        repr(result), [result.verdict()], [coefficient(row) for row in result.coefficients()],
-        result.warnings(), spare=("what", "unit", "before"),
+        repr(result), [result.sentence()], [coefficient(row) for row in result.coefficients()],
+        result.warnings, spare=("what", "unit", "before"),
         rooms=lambda: {"": rooms(result)}, motions=lambda: compared(result.compared),
     )  # fmt: skip
 
@@ -108,7 +108,7 @@ def sweep(result: SweepResult) -> View:
     ]
     says = [result.recommended()["sentence"], result.overfitting()["sentence"]]
     return View(
-        repr(result), says, rows, result.warnings(),
+        repr(result), says, rows, result.warnings,
         spare=tuple(reversed(list(result.runs[0].theta))),
         rooms=lambda: {f"a_r {a_r:g}": rooms(run) for a_r, run in zip(result.widths, result.runs, strict=True)},
         motions=lambda: compared(result.runs[result.best].compared),
@@ -146,7 +146,7 @@ def posterior(result: Posterior) -> View:
         }
         for row in document["numbers"]
     ]
-    return View(repr(result), result.sentences(), rows, result.warnings(), rooms=lambda: {"": _left_open(result)})
+    return View(repr(result), result.sentences(), rows, result.warnings, rooms=lambda: {"": _left_open(result)})
 
 
 def _left_open(result: Posterior) -> list[Room]:

@@ -117,4 +117,4 @@ def voyages(result: VoyageValidation) -> View:
         rows.append({"model": name, "windows": result.n_windows, "median cVDM [%]": result.median(name),
                      **result.classes(name)})  # fmt: skip
     notes = [f"{name}: {note}." for name, of in result.notes.items() for note in of]
-    return View(repr(result), [result.verdict()], rows, notes)
+    return View(repr(result), [result.sentence()], rows, notes)

@@ -74,7 +74,8 @@ class Posterior(Plotted):
         """The particles: what the result stands for where a ship is wanted."""
         return self.particles
 
-    def warnings(self) -> list[str]:
+    @property
+    def warnings(self) -> tuple[str, ...]:
         """What a reader must know before trusting the bands."""
         one_sided = self.shown.one_sided()
         found = [f"{capital(words)}." for words in another_ship(self.trials_ship, self.particles.profile.id)]
@@ -88,7 +89,7 @@ class Posterior(Plotted):
                 f"Particles miss the trials {self.nonlinear:.1f} times as far as a Gaussian distribution would have it;"
                 " bands near the trials are wider than they need be."
             )
-        return found
+        return tuple(found)
 
     def sentences(self) -> list[str]:
         """What the bands are made of, in words."""
@@ -132,7 +133,7 @@ class Posterior(Plotted):
             "converged": self.converged,
             "interrupted": self.interrupted,
             "sentences": self.sentences(),
-            "warnings": self.warnings(),
+            "warnings": list(self.warnings),
             "numbers": numbers,
         }
 

@@ -219,7 +219,7 @@ class VoyageValidation(Displayed):
         better = float((other[there] < one[there]).mean()) if there.any() else float("nan")
         return Comparison(first, second, int(both.sum()), better, mean, interval)
 
-    def verdict(self) -> str:
+    def sentence(self) -> str:
         """The answer in a sentence, after one that says so where it is not of all voyages."""
         return f"{STOPPED} {self._verdict()}" if self.interrupted else self._verdict()
 
@@ -248,7 +248,7 @@ class VoyageValidation(Displayed):
             "kind": "voyages",
             **self.provenance,
             "interrupted": self.interrupted,
-            "verdict": self.verdict(),
+            "verdict": self.sentence(),
             "options": self.options.to_dict(),
             "window_s": self.options.window,
             "gap_s": self.options.gap,

@@ -111,7 +111,7 @@ def test_a_fit_to_one_side_does_not_make_the_other_wrong(one_sided):
     profile = load_profile("suzaku")
     assert result.box.names == ("hull.R_0", BOTH[0])
     assert result.tuned_values[BOTH[1]] == pytest.approx(1.2 * profile.value(BOTH[1]), rel=1e-3)
-    assert any("turn to starboard only" in note for note in result.warnings())
+    assert any("turn to starboard only" in note for note in result.warnings)
     (port,) = simulate_trials(result.tuned_profile(), [sailed["port"]], integrator=Integrator("rk4"))
     assert port.states[-1, :2] == pytest.approx(sailed["port"].motion[-1, :2], abs=0.5)
     document = result.to_dict()

@@ -238,8 +238,8 @@ def test_a_stop_keeps_the_best_so_far(suzaku, noisy):
     result = fit(suzaku.profile, noisy, FitOptions(), hooks=Hooks(stop=stop))
     assert result.interrupted
     assert result.J_before > result.J
-    assert result.verdict().startswith("The fit was stopped before its end: ")
-    assert replace(result, interrupted=False).verdict().startswith("On 4 trials not used for tuning")
+    assert result.sentence().startswith("The fit was stopped before its end: ")
+    assert replace(result, interrupted=False).sentence().startswith("On 4 trials not used for tuning")
 
 
 @pytest.fixture(scope="module")
@@ -356,8 +356,8 @@ def test_a_test_trial_that_comes_closer_is_not_called_worse(swept):
     assert [one.code for one in notes] == ["mixed"]
     assert notes[0].words.startswith(f"J rises on test trials that come closer in metres: {tests[0].trial.id}: ")
     n = len(tests)
-    assert f"; J falls on {n - 1} of {n} of these trials, the track comes closer on {n}." in mixed.verdict()
-    assert f"; {n} of {n} of these trials improve." in run.verdict()
+    assert f"; J falls on {n - 1} of {n} of these trials, the track comes closer on {n}." in mixed.sentence()
+    assert f"; {n} of {n} of these trials improve." in run.sentence()
 
 
 @pytest.mark.parametrize("widths", [(), (0.2, 0.2), (0.2, -0.1)])

@@ -108,7 +108,7 @@ def test_held_out_indices_are_recovered(fitted, truth):
     assert fitted.J == 0.0
     assert "5 stated numbers, 3 coefficients" in fitted.identifiability.sentences[0]
     assert all(fitted.identifiability.stderr[name] < 0.15 * abs(truth.profile.value(name)) * 1.2 for name in FEW)
-    assert fitted.verdict().startswith("On 4 stated indices not used for tuning")
+    assert fitted.sentence().startswith("On 4 stated indices not used for tuning")
 
 
 def test_indices_and_time_series_say_the_same(fitted, truth, off):

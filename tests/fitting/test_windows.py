@@ -36,10 +36,10 @@ def test_windows_are_not_called_trials(suzaku, tmp_path):
     assert len(cut) > len(trials.test)
     words = f"{len(cut)} windows of {len(trials.test)} trials"
     assert swept.recommended()["sentence"].startswith(f"On {words} not used for tuning, ")
-    verdict = swept.runs[0].verdict()
+    verdict = swept.runs[0].sentence()
     assert verdict.startswith(f"On {words} not used for tuning, ")
     assert f" of {len(cut)} of these windows improve." in verdict
-    warned = swept.runs[0].warnings()
+    warned = swept.runs[0].warnings
     assert f"{len(trials.trials)} of {len(trials.trials)} trials are generated, not measured." in warned
     assert not [one for one in warned if "the ship is steered" in one]  # said of a window: its rudder is held
     off = swept.to_dict()["runs"][0]["off"]["test"]

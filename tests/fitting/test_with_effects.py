@@ -116,7 +116,7 @@ def test_a_factor_on_what_no_trial_measured_is_held(ship):
     assert {"effects.current.north", "effects.current.east"} < set(result.theta)
     assert name in result.held
     said = f"{name} is held at 0: no tune trial has measured current."
-    assert [one for one in result.warnings() if name in one] == [said]
+    assert [one for one in result.warnings if name in one] == [said]
     assert said in str(plan_fit(ship, some, asked))
     assert name not in result.identifiability.undetermined
 

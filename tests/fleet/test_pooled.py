@@ -167,9 +167,9 @@ def test_a_fit_begins_from_what_sisters_say(sisters_file: Path, tmp_path: Path) 
     drawn, alone = (np.abs(np.array([one.theta[name] for name in NAMES]) - box.centre) for one in (result, plain))
     assert (drawn / box.scatter).sum() < (alone / box.scatter).sum()
     silent = "The class of sister ships has no effect: their trials say nothing of the targets, only of hull.R_0, hull."
-    assert not any(line.startswith(silent) for line in result.warnings())
+    assert not any(line.startswith(silent) for line in result.warnings)
     assert any(
-        line.startswith(silent) for line in fit("suzaku", data, replace(options, targets=("hull.N_r",))).warnings()
+        line.startswith(silent) for line in fit("suzaku", data, replace(options, targets=("hull.N_r",))).warnings
     )
 
 

@@ -68,7 +68,7 @@ def test_what_was_stopped_gives_the_best_so_far_and_goes_on_to_the_same(tmp_path
         tmp_path.mkdir()
         stopped = posterior("suzaku", trials, OPTIONS, hooks=after(phases), folder=tmp_path)
         assert stopped.interrupted
-        assert "Stopped before its end" in " ".join(stopped.warnings())
+        assert "Stopped before its end" in " ".join(stopped.warnings)
         assert write_posterior(stopped, tmp_path)["interrupted"]
         assert (tmp_path / JOURNAL).is_file()
         (scored,) = validate(tmp_path, trials).profiles

@@ -277,7 +277,7 @@ def test_stopped_between_portions(voyage_file, monkeypatch):
     (log,) = result.to_dict()["logs"]
     assert (log["complete"], log["windows"]) == (False, 20)
     assert "interrupted" in repr(result)
-    assert result.verdict().startswith("Stopped before its end: ")
+    assert result.sentence().startswith("Stopped before its end: ")
 
 
 @pytest.mark.daily("2")
