@@ -26,7 +26,7 @@ SECONDS = 300
 IMPORTED = (
     "cma", "matplotlib.backends.backend_pdf", "matplotlib.backends.backend_svg", "matplotlib.figure", "pandas",
     "pyarrow.parquet", "scipy.interpolate", "scipy.linalg", "scipy.optimize", "scipy.stats", "mmgtune.checking",
-    "mmgtune.report.fit_page",
+    "mmgtune.report.pages.fit_page",
 )  # fmt: skip
 
 

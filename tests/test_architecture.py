@@ -45,7 +45,7 @@ def test_the_contracts_are_kept():
     assert code == 0, said
 
 
-@pytest.mark.daily("mmgtune.model is", "import numpy", "astrology")
+@pytest.mark.daily("mmgtune.model is", "import numpy", "astrology", "bench")
 @pytest.mark.parametrize(
     ("module", "line", "wanted"),
     [
@@ -54,6 +54,11 @@ def test_the_contracts_are_kept():
         ("errors.py", "import numpy", "mmgtune.errors imports numpy (l.1)"),
         ("fitting/run.py", "from torch import nn", "mmgtune.fitting.run imports torch (l.1)"),
         ("report/load.py", "def late():\n    import typer", "mmgtune.report.load imports typer (l.2)"),
+        (
+            "diagnose/bench/runs.py",
+            "from ..searching import search",
+            "mmgtune.diagnose.bench is not allowed to import mmgtune.diagnose.searching",
+        ),
         ("model.py", "from .fitting import box", "mmgtune.model is not allowed to import mmgtune.fitting"),
         ("physics/wind.py", "from .. import errors", "mmgtune.physics is not allowed to import mmgtune.errors"),
         ("fitting/box.py", "from mmgtune import load_profile", "mmgtune.fitting.box -> mmgtune (l.1)"),

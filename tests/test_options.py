@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.leftover import _explained
+from mmgtune.diagnose.evidence.leftover import _explained
 from mmgtune.errors import OptionError
 from mmgtune.options import (
     CheckOptions,

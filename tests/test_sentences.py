@@ -7,7 +7,7 @@ from pathlib import Path
 
 import mmgtune
 from mmgtune.hooks import Phase
-from mmgtune.trial.finding import Rescale
+from mmgtune.trial.checks.finding import Rescale
 
 TEXTS = {"what", "why", "where", "fix"}
 """Attributes of problems and findings that hold sentences."""

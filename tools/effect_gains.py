@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mmgtune.diagnose.hypotheses import hypotheses
+from mmgtune.diagnose.bench.hypotheses import hypotheses
 from mmgtune.fitting import FitOptions, in_pieces, make_problem
 from mmgtune.fitting.least_squares import solve
 from mmgtune.fitting.optimum import edge_ridge, random_starts

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mmgtune.diagnose import Diagnosis, diagnose
-from mmgtune.diagnose.causes import Detectability
+from mmgtune.diagnose.causes.cause import Detectability
 from mmgtune.files import write_text
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials

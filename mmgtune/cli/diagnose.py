@@ -20,8 +20,8 @@ from .progress import Progress
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
-    from ..diagnose.by_run import ByRun
-    from ..diagnose.legs import Difference
+    from ..diagnose.causes.by_run import ByRun
+    from ..diagnose.voyages.differences import Difference
 
 
 class Left:
@@ -160,7 +160,7 @@ def _of_runs(one: ByRun) -> list[str]:
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """Plain-text summary of the result."""
     from ..diagnose.folder import CALM
-    from ..diagnose.retuned import in_words as in_words_of_retuned
+    from ..diagnose.signatures.retuned import in_words as in_words_of_retuned
     from ..profile.doubts import in_words
     from ..report.wording import span
 

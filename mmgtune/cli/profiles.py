@@ -308,7 +308,7 @@ def _asked() -> Particulars:
 
 def _side_by_side(found: Comparison) -> str:
     """Coefficients and indices of two profiles in columns."""
-    from ..report.comparison_page import words_of
+    from ..report.pages.comparison_page import words_of
     from ..report.wording import run_words
 
     def number(value: float | None) -> str:

@@ -150,7 +150,7 @@ def _compared(one: dict[str, Any], anew: str) -> str:
 
 
 def _left_out(found: dict[str, Any]) -> str:
-    from ..trial.voyage_windows import Unused
+    from ..trial.voyages.windows import Unused
 
     rows = sum(log["rows_read"] for log in found["logs"])
     left: dict[str, int] = {}

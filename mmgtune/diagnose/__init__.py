@@ -1,22 +1,17 @@
 """Diagnosis: what a simulation gets wrong, the cause, the extended model, and the gain on trials it has not seen.
 
-result            what comes out; run: from beginning to end; planning: what it would do
-hypotheses        what may be the cause
-workbench         trials, model with every effect, refits
-noise, inputs     what chance does to residuals; beliefs, winds: what is not known of the hull and of causes
-linear, screening signatures beyond re-tuning, scores, critical values
-search            forward search, backward look, rivals; base_fit: where it begins
-shortlist, refitter which hypotheses are refitted in a look; one of them: from where, and how far
-refitting, refit  all of a look, the best first; whether one is believed, and what rivals it
-contributions     what each cause brings beside the others; traces; record: how often such an answer was right
-unseen, gain      fitted points on trials they were not fitted to, and what causes gain there
-intervals, leftover, separate         sizes, what is left, the trial that would tell; one_clock: two scales that are one
-runs, hierarchy, by_run, elsewhere    what differs from run to run: groups, evidence, words, runs held out
-voyages, legs     windows of logs of hours; what differs from voyage to voyage
-evidence          residual forces and short horizons, before any cause
-whereabouts       where an error lives that nothing explains; narrow: whether the box of the targets is in the way
+run               from beginning to end; planning: what it would do; result: what comes out; folder: its files
+bench/            trials, model with every effect, noise and beliefs: what all else stands on
+signatures/       what an effect would change that re-tuning cannot imitate: scores, intervals
+searching/        screen, refit, decide, add, and look again
+held_out/         what an answer is worth on trials it was not found on
+evidence/         residual forces and short horizons, what is left, and where in the runs it lives
+causes/           what each cause contributes, which are believed, and which are traces
+voyages/          windows of logs of hours, and what differs from voyage to voyage
+answering/        the answer and its words
+record            how often such an answer was right in the study; calm: the ship without the day
 
-Words of these modules:
+Each uses those above it and none below.  Words of these modules:
 
 bench   ``Workbench``: trials, model with every effect, box and noise, on which everything is fitted
 point   a fitted model on the bench: what was free, its values, initial states and chi-squared
@@ -32,11 +27,11 @@ from types import ModuleType
 from typing import Any
 
 from ..options import DiagnoseOptions
+from .answering.verdict import VERDICTS
 from .folder import write_diagnosis
 from .planning import plan_diagnosis
 from .result import Diagnosis
 from .run import diagnose
-from .verdict import VERDICTS
 
 __all__ = ["VERDICTS", "DiagnoseOptions", "Diagnosis", "diagnose", "plan_diagnosis", "write_diagnosis"]
 

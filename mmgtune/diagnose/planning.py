@@ -9,9 +9,9 @@ from ..fitting.setting import in_pieces
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..options import DiagnoseOptions
 from ..trial import VoyageSet
-from .hypotheses import known_causes
-from .voyages import looked_at, with_hull_held
-from .workbench import make_workbench
+from .bench.hypotheses import known_causes
+from .bench.workbench import make_workbench
+from .voyages.windows import looked_at, with_hull_held
 
 EVALUATIONS = (15, 200)
 """Evaluations a hypothesis costs per parameter fitted, over screening and refits, from few to many."""

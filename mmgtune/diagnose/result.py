@@ -8,8 +8,9 @@ from typing import Any
 
 from ..documents import finite_values
 from ..profile import ShipProfile, tuned, with_effects
-from . import beliefs, saying, winds
-from .verdict import Answer
+from .answering import saying
+from .answering.verdict import Answer
+from .bench import beliefs, winds
 
 SCHEMA = 1
 

@@ -28,25 +28,25 @@ from ..phrases import capital
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, another_ship, oddities
+from ..trial.checks.set_checks import turn_away
+from ..trial.checks.swell import period_of, swings
 from ..trial.schema import MOTION
-from ..trial.set_checks import turn_away
-from ..trial.swell import period_of, swings
-from .belief import TOLD
-from .contributions import removed_by, set_aside
-from .hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
-from .judging import Judge, leaves_much_open
-from .jumped import in_parts
-from .jumped import in_words as jumps_in_words
-from .leftover import NOTICED, SWELLS, beside_swell, leftover
-from .legs import LEG_NAMES, Difference, differences
-from .narrow import narrow_box
-from .refit import ENOUGH, Refit
+from .answering.judging import Judge, leaves_much_open
+from .answering.jumped import in_parts
+from .answering.jumped import in_words as jumps_in_words
+from .bench.hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
+from .bench.workbench import Workbench, make_workbench
+from .causes.belief import TOLD
+from .causes.contributions import removed_by, set_aside
+from .evidence.leftover import NOTICED, SWELLS, beside_swell, leftover
+from .held_out.together import Together
+from .held_out.unseen import Unseen
 from .result import Diagnosis
-from .search import Found, against_its_kin, doubtful_beginning, price_of, search
-from .together import Together
-from .unseen import Unseen
-from .voyages import Choice, looked_at, with_hull_held
-from .workbench import Workbench, make_workbench
+from .searching.narrow import narrow_box
+from .searching.refit import ENOUGH, Refit
+from .searching.search import Found, against_its_kin, doubtful_beginning, price_of, search
+from .voyages.differences import LEG_NAMES, Difference, differences
+from .voyages.windows import Choice, looked_at, with_hull_held
 
 
 @blas_on_one_thread

@@ -27,7 +27,7 @@ IMPORTED = (
     "mmgtune.backends.compiling",
     "mmgtune.fleet.commands",
     "mmgtune.fleet.work",
-    "mmgtune.report.kinds",
+    "mmgtune.report.pages.kinds",
     "pandas",
     "pyarrow.parquet",
 )

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..inputs import INPUTS
-from ..trial.motion_checks import spikes
+from ..trial.checks.motion_checks import spikes
 from ..trial.schema import surrounding
 from .record import Record
 

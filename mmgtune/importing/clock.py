@@ -13,13 +13,13 @@ from .. import units
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import LogError, Problem
 from ..trial.schema import impossible
-from .dates import ORDERS, Dates, Shows, is_date, order_told
-from .mapping import TimeSource
-from .numerals import numbers_in
-from .periods import Periods
-from .stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, of_day, of_digits, of_watch, times_told
-from .thousands import either_way, first_marked, in_thousands
-from .with_units import numbers_with_unit
+from .cells.dates import ORDERS, Dates, Shows, is_date, order_told
+from .cells.numerals import numbers_in
+from .cells.periods import Periods
+from .cells.stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, of_day, of_digits, of_watch, times_told
+from .cells.thousands import either_way, first_marked, in_thousands
+from .cells.with_units import numbers_with_unit
+from .maps.mapping import TimeSource
 
 OUTLIERS = 3
 """Rows in a row whose stamps may be off while the clock as a whole is right."""

@@ -12,7 +12,7 @@ from ..inputs import INPUTS
 from ..physics.frame import to_ship
 from ..trial.kinematics import FITS, Reading, position_misfits, turning
 from ..units import DEG
-from .mapping import LogMap
+from .maps.mapping import LogMap
 from .motion import moved
 
 AXES = {

@@ -11,8 +11,8 @@ from ..manoeuvres import Track, find_execute, manoeuvre_kind
 from ..manoeuvres.track import noise_level
 from ..units import DEG
 from .gridding import FEWEST
-from .mapping import LogMap
-from .quantities import MEASURED
+from .maps.mapping import LogMap
+from .maps.quantities import MEASURED
 
 STANDING = 0.01
 """Share of its largest revolutions up to which a shaft stands."""

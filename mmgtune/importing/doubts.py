@@ -14,12 +14,12 @@ from ..arrays import FloatArray
 from ..phrases import aboard
 from ..physics.frame import to_earth
 from ..trial import Trial
-from ..trial.finding import Finding, Rescale
+from ..trial.checks.finding import Finding, Rescale
 from ..trial.kinematics import turning, white_noise
 from ..units import DEG
 from .cutting import standing
 from .gridding import FEWEST
-from .mapping import LogMap
+from .maps.mapping import LogMap
 from .record import MORE_DIGITS, Coarse, Record
 from .yaw import integral_of
 

@@ -10,7 +10,7 @@ from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..phrases import counted
 from ..physics.frame import to_ship
-from .mapping import LogMap
+from .maps.mapping import LogMap
 from .record import Record, Series
 
 NAMES = {"transverse-mercator": "tmerc", "azimuthal-equidistant": "aeqd"}

@@ -12,8 +12,8 @@ from ..arrays import FloatArray, runs_of_true
 from ..errors import LogError, OptionError, Problem, brief
 from ..limits import as_float, is_real, too_fine
 from ..phrases import listed
-from .mapping import LogMap
-from .quantities import MEASURED, meaning
+from .maps.mapping import LogMap
+from .maps.quantities import MEASURED, meaning
 from .record import Record, Series
 
 FEWEST = 20

@@ -26,25 +26,25 @@ from .cleaning import without_spikes
 from .clock import falls, put_right
 from .cutting import kept, pull_out
 from .doubts import fix_in_map
-from .forms import form_of, refuse_binary
+from .formats.forms import form_of, refuse_binary
+from .formats.matlab import variables
+from .formats.matlab_columns import read_matlab, runs_in
+from .formats.nmea import read_nmea
+from .formats.parquet_log import read_parquet
+from .formats.sides import as_cells_say
+from .formats.table import InPart, Table
+from .formats.text import binary, read_text, start_of
+from .formats.workbook import logs_among, outlines_of, read_workbook
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, hold_step, missing_between, on_grid, stretches
 from .jumps import cut_at_jumps
-from .mapping import ALL, LogMap
-from .matlab import variables
-from .matlab_columns import read_matlab, runs_in
+from .maps.mapping import ALL, LogMap
+from .maps.quantities import MEASURED
+from .maps.reading_map import load_map
 from .means import with_mean
-from .nmea import read_nmea
-from .parquet_log import read_parquet
 from .proposing.elsewhere import yaw_rate_elsewhere
 from .quality import quality_of, quality_text, same_units_throughout
-from .quantities import MEASURED
-from .reading_map import load_map
 from .record import Record, record_of, time_in_seconds
-from .sides import as_cells_say
-from .table import InPart, Table
-from .text import binary, read_text, start_of
-from .workbook import logs_among, outlines_of, read_workbook
 from .yaw import heading_recovered
 
 REPORT = "import-report.json"

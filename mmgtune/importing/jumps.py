@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import LogError
 from ..limits import LOG_PARTS
-from .mapping import LogMap
+from .maps.mapping import LogMap
 from .record import Record, Series
 
 LONG = 1000.0

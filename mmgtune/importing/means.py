@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..inputs import INPUTS
-from .mapping import LogMap
+from .maps.mapping import LogMap
 
 
 def with_mean(columns: dict[str, FloatArray], name: str, log_map: LogMap) -> list[str]:

@@ -9,7 +9,7 @@ from ..phrases import aboard
 from ..physics.frame import to_earth, to_ship
 from ..trial.kinematics import white_noise
 from ..trial.smoothing import FEWEST, smoothed, time_scale
-from .mapping import LogMap
+from .maps.mapping import LogMap
 
 LONGEST = 5000
 """Samples the time scale of a smoothing is chosen on."""

@@ -16,15 +16,15 @@ import numpy as np
 from ..errors import LogError, Problem
 from ..phrases import counted
 from .doubts import shifted_lever
-from .forms import form_of
+from .formats.forms import form_of
 from .importer import Imported, import_logs, paths_of
-from .mapping import ALL, ASKS, PARTS, LogMap
+from .maps.mapping import ALL, ASKS, PARTS, LogMap
+from .maps.reading_map import parse_map
 from .proposing.finder import MOST_LOGS, Finder
 from .proposing.finding import found_in
 from .proposing.guess import Guess
 from .proposing.sampling import Sample, samples_of
 from .proposing.writing import guess_dict, table_of_guesses, toml_of_map
-from .reading_map import parse_map
 from .yaw import WANDERS, NotFollowed
 
 

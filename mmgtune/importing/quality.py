@@ -17,16 +17,16 @@ from ..inputs import INPUTS
 from ..phrases import counted
 from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
-from ..trial.control_checks import fastest_change, looks_ordered
-from ..trial.finding import Finding
+from ..trial.checks.control_checks import fastest_change, looks_ordered
+from ..trial.checks.finding import Finding
 from ..trial.kinematics import Reading, position_misfits, turning
 from ..units import DEG, KNOT, shown_in
 from .conventions import rudder_evidence
 from .doubts import doubts, fix_in_map
 from .gridding import Grid
-from .mapping import LogMap
+from .maps.mapping import LogMap
+from .maps.quantities import MEASURED
 from .proposing.elsewhere import yaw_rate_elsewhere
-from .quantities import MEASURED
 from .record import Record
 
 WINDOWS = 16

@@ -12,13 +12,13 @@ import numpy as np
 from .. import units
 from ..arrays import BoolArray, FloatArray
 from ..errors import LogError, Problem
-from .degrees import DDMM
-from .digits import print_step, within_digits
-from .headers import unit_in
-from .mapping import LogMap, Source, TimeSource
-from .quantities import AGAINST, known_quantity, meaning
-from .seldom import is_seldom
-from .table import TIME, Table
+from .cells.degrees import DDMM
+from .cells.digits import print_step, within_digits
+from .cells.headers import unit_in
+from .cells.seldom import is_seldom
+from .formats.table import TIME, Table
+from .maps.mapping import LogMap, Source, TimeSource
+from .maps.quantities import AGAINST, known_quantity, meaning
 
 PAIRS = (("latitude", "longitude"), ("x", "y"), ("u", "v"))
 """Quantities that are read together."""

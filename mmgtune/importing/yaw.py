@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..trial.kinematics import rounding_noise, white_noise
 from ..units import DEG
-from .mapping import LogMap
+from .maps.mapping import LogMap
 from .record import Record, Series
 
 MISS = 3.0

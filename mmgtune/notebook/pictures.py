@@ -11,7 +11,7 @@ import numpy as np
 from ..displayed import inert
 from ..errors import OptionError, Problem, among, brief, parts_of
 from ..inputs import INPUTS
-from ..report.svg import FILE_COLORS
+from ..report.figures.svg import FILE_COLORS
 from ..report.wording import CHANNELS, OVER_TIME, Channel, input_channel
 from ..text_tables import cut
 from .view import Line, Room, View

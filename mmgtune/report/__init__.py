@@ -23,8 +23,8 @@ def render(folder: Path | str, *, pdf: bool = False) -> list[Path]:
     must_be_name(folder, "run folder", OptionError)
     folder = Path(folder)
     from . import html, load, markdown
-    from .kinds import KINDS
     from .output import write
+    from .pages.kinds import KINDS
 
     kind, run = load.find(folder, KINDS)
     with load.whole(folder / kind.file):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
-    from .plot import Figure
+    from .figures.plot import Figure
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from ..how_far_off import mean_off_heading, mean_off_track
 from ..profile.doubts import in_words
 from .advice import shortest
 from .blocks import Block, Card, Fold, Picture, Prose, Section, Table
-from .plot import Figure
+from .figures.plot import Figure
 from .tables import pairs, tone
 from .wording import NONE, change, clean, count, number, percent, piece_of, sentence, shown
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import FloatArray
-from . import figures, findings, tables
+from . import findings, tables
 from .blocks import Block, Fold, Prose, Section, Table
 from .common import picture
+from .figures import of_fit as figures
 from .wording import count, number, sentence, short, shown
 
 if TYPE_CHECKING:

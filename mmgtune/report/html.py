@@ -29,7 +29,7 @@ def fragment(page: Page) -> str:
 def _rendered(template: str, page: Page, payloads: list[str]) -> str:
     from markupsafe import Markup
 
-    from . import svg
+    from .figures import svg
 
     text: str = (
         _environment()

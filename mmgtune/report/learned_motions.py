@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import motion_block, motions
+from . import motion_block
 from .blocks import Motions, Picture
 from .common import picture
-from .plot import LOOKS, Axis, Figure, Line, Look, Panel, model_look
+from .figures import motions
+from .figures.plot import LOOKS, Axis, Figure, Line, Look, Panel, model_look
 from .wording import clean, number, shown
 
 if TYPE_CHECKING:

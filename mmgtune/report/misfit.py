@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from .blocks import Cell, Table, cells
-from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, Words
+from .figures.plot import Axis, Figure, Line, Look, Mark, Panel, Rule, Words
 from .wording import NONE, TRIALS_OF_ROLE, change, number, percent, shown
 
 if TYPE_CHECKING:

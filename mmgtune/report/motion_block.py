@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..run_folders import MOTIONS
-from . import findings, motions, tables_of_motion, tracks
+from . import findings, tables_of_motion
 from .blocks import Motions, Picture, Table
 from .common import picture
+from .figures import motions, tracks
 from .forces import MOST, NO_SHIP, Ship
 from .wording import ROLES, Channel, clean, number
 

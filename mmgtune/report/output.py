@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..files import atomic, write_text
-from . import svg
+from .figures import svg
 
 if TYPE_CHECKING:
     from .blocks import Page
@@ -25,7 +25,7 @@ def write(folder: Path, page: Page, html: str, markdown: str, pdf: bool) -> list
         written.append(write_text(folder / "figures" / f"{name}.svg", svg.file(figure)))
         path = folder / "figures" / f"{name}.pdf"
         if pdf or path.exists():
-            from .pdf import render
+            from .figures.pdf import render
 
             with atomic(path) as part:
                 part.write_bytes(render(figure))

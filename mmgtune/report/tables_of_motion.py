@@ -10,12 +10,12 @@ import numpy as np
 
 from ..manoeuvres.named import in_order
 from .blocks import Cell, Table, cells
+from .figures.tracks import distance_from
 from .tables import tone
-from .tracks import distance_from
 from .wording import NONE, PRINCIPAL, change, clean, fixed, index_words, is_index, number, percent
 
 if TYPE_CHECKING:
-    from .tracks import Motion
+    from .figures.tracks import Motion
 
 
 def distances(

@@ -20,7 +20,7 @@ from .parquet import id_in, read_trial
 from .pieces import divided, windows
 from .raw_logs import LogInstead, instead, logs_instead
 from .split import SPLIT, Split, read_split
-from .voyage import Voyage
+from .voyages.voyage import Voyage
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, closest
-from .finding import Rescale
+from .checks.finding import Rescale
 from .kinematics import FITS, TIMES, Reading, position_misfits, time_unit, turning
 from .raw_logs import import_commands
 from .schema import (

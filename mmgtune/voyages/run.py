@@ -29,7 +29,7 @@ from ..predictor import PhysicsPredictor, Predictor, Uncertain, draught_of, of_a
 from ..provenance import made_by
 from ..threads import blas_on_one_thread
 from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
-from ..trial.voyage_windows import Window, mean_speed, rest_speed
+from ..trial.voyages.windows import Window, mean_speed, rest_speed
 from ..units import DEG
 from ..validating import Scorable, bands_of, predictors_of
 from .part import Part, noted, recalled

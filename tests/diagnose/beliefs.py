@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from mmgtune.diagnose.belief import Belief
+from mmgtune.diagnose.causes.belief import Belief
 
 FIELDS = [one.name for one in fields(Belief)]
 

@@ -5,8 +5,8 @@ import pytest
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.fitting.least_squares import fit_offsets
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import tuned

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.search import against_its_kin, doubtful_beginning
+from mmgtune.diagnose.searching.search import against_its_kin, doubtful_beginning
 from mmgtune.effects import find_effect
 from mmgtune.hooks import Hooks
 

@@ -5,12 +5,12 @@ import pytest
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.beliefs import let_go
-from mmgtune.diagnose.detecting import told_apart
-from mmgtune.diagnose.intervals import estimates
-from mmgtune.diagnose.linear import BOXED, Tuned, _from_bounds, linearise
-from mmgtune.diagnose.workbench import Point, make_workbench
+from mmgtune.diagnose.answering.detecting import told_apart
+from mmgtune.diagnose.bench.beliefs import let_go
+from mmgtune.diagnose.bench.workbench import Point, make_workbench
+from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.signatures.intervals import estimates
+from mmgtune.diagnose.signatures.linear import BOXED, Tuned, _from_bounds, linearise
 from mmgtune.model import Model
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, tuned

@@ -12,10 +12,10 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.diagnose.by_run import ByRun
-from mmgtune.diagnose.intervals import Estimate
-from mmgtune.diagnose.intervals import _apart as apart_of
-from mmgtune.diagnose.wording import quantity, range_in_words
+from mmgtune.diagnose.causes.by_run import ByRun
+from mmgtune.diagnose.signatures.intervals import Estimate
+from mmgtune.diagnose.signatures.intervals import _apart as apart_of
+from mmgtune.diagnose.signatures.wording import quantity, range_in_words
 from mmgtune.effects import find_effect
 from mmgtune.effects.signs import UNLIMITED
 from mmgtune.profile import load_profile, parse_profile

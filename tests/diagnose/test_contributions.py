@@ -11,11 +11,15 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator
-from mmgtune.diagnose import DiagnoseOptions, diagnose, saying
-from mmgtune.diagnose import contributions as contributed
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.causes import Cause, Trace
-from mmgtune.diagnose.contributions import (
+from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.diagnose.answering import saying
+from mmgtune.diagnose.answering.judging import Judge
+from mmgtune.diagnose.bench.hypotheses import Hypothesis, known_causes
+from mmgtune.diagnose.bench.noise import ChannelNoise
+from mmgtune.diagnose.bench.workbench import Point, make_workbench
+from mmgtune.diagnose.causes import contributions as contributed
+from mmgtune.diagnose.causes.cause import Cause, Trace
+from mmgtune.diagnose.causes.contributions import (
     Contribution,
     _form_of_others,
     _is_sure,
@@ -24,17 +28,14 @@ from mmgtune.diagnose.contributions import (
     squares,
     takes_the_rest,
 )
-from mmgtune.diagnose.doubted import Leading
-from mmgtune.diagnose.gain import BAND, expected, held_out
-from mmgtune.diagnose.hypotheses import Hypothesis, known_causes
-from mmgtune.diagnose.intervals import Estimate
-from mmgtune.diagnose.judging import Judge
-from mmgtune.diagnose.leftover import Leftover, _slow
-from mmgtune.diagnose.noise import ChannelNoise
+from mmgtune.diagnose.causes.doubted import Leading
+from mmgtune.diagnose.evidence.leftover import Leftover, _slow
+from mmgtune.diagnose.held_out.gain import BAND, expected, held_out
+from mmgtune.diagnose.held_out.unseen import Unseen
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
-from mmgtune.diagnose.search import Found
-from mmgtune.diagnose.unseen import Unseen
-from mmgtune.diagnose.workbench import Point, make_workbench
+from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.search import Found
+from mmgtune.diagnose.signatures.intervals import Estimate
 from mmgtune.effects import Visited, effects, find_effect
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, tuned

@@ -12,10 +12,10 @@ import pytest
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import VERDICTS, DiagnoseOptions, diagnose
-from mmgtune.diagnose.intervals import Estimate
-from mmgtune.diagnose.noise import NoiseModel, estimate
-from mmgtune.diagnose.refit import Refit
-from mmgtune.diagnose.wording import parameters_in_words
+from mmgtune.diagnose.bench.noise import NoiseModel, estimate
+from mmgtune.diagnose.searching.refit import Refit
+from mmgtune.diagnose.signatures.intervals import Estimate
+from mmgtune.diagnose.signatures.wording import parameters_in_words
 from mmgtune.effects import effects, find_effect
 from mmgtune.errors import OptionError
 from mmgtune.motions import simulate_trials

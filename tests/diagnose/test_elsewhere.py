@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from mmgtune.diagnose import elsewhere
+from mmgtune.diagnose.held_out import elsewhere
 
 NAMES = [f"effects.wind.{name}@trial:{run}" for run in ("a", "b") for name in ("speed", "direction")]
 

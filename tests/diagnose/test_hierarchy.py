@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from mmgtune.diagnose.hierarchy import ROUGHLY, Hierarchy
-from mmgtune.diagnose.runs import between, groupings, labels_of, spread_key
+from mmgtune.diagnose.bench.runs import between, groupings, labels_of, spread_key
+from mmgtune.diagnose.signatures.hierarchy import ROUGHLY, Hierarchy
 from mmgtune.fitting.box import base_of, group_of
 from mmgtune.trial import load_trials
 

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.hypotheses import known_causes, not_looked_for, of_runs
-from mmgtune.diagnose.refitting import akin
+from mmgtune.diagnose.bench.hypotheses import known_causes, not_looked_for, of_runs
+from mmgtune.diagnose.searching.refitting import akin
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.inputs import DRAWS, changes
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose.bench.inputs import DRAWS, changes
+from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 

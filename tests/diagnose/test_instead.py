@@ -6,11 +6,11 @@ import re
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.hypotheses import Hypothesis, hypotheses
-from mmgtune.diagnose.instead import Instead, instead_of_tuning
-from mmgtune.diagnose.search import Found
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose.bench.hypotheses import Hypothesis, hypotheses
+from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.instead import Instead, instead_of_tuning
+from mmgtune.diagnose.searching.search import Found
 from mmgtune.effects import find_effect
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
@@ -18,7 +18,7 @@ from mmgtune.trial import load_trials
 from tests.hidden.cases import draw_ship
 from tests.hidden.plant import TUNING, WHITE, simulate, write
 
-search = importlib.import_module("mmgtune.diagnose.search")  # the package has a function of that name
+search = importlib.import_module("mmgtune.diagnose.searching.search")  # the package has a function of that name
 
 TAGS = ("shallow-water", "loading", "rudder-gain", "rpm-scale", "current", "resistance")
 HULL = ("hull.*", "wake.w_P0", "rudder.gamma_Rp", "rudder.gamma_Rn", "rudder.eps")

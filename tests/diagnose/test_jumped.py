@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import diagnose, write_diagnosis
-from mmgtune.diagnose.jumped import in_parts, in_words
+from mmgtune.diagnose.answering.jumped import in_parts, in_words
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
 from mmgtune.report import render

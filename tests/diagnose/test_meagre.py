@@ -11,12 +11,12 @@ import pytest
 
 from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
 from mmgtune.backends import Integrator
-from mmgtune.diagnose.judging import _left_open
+from mmgtune.diagnose.answering.judging import _left_open
 from mmgtune.errors import OptionError
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile
 from mmgtune.trial import Trial
-from mmgtune.trial.set_checks import turn_away
+from mmgtune.trial.checks.set_checks import turn_away
 from mmgtune.units import DEG
 from tests.diagnose.sensors import logged
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator
-from mmgtune.diagnose import DiagnoseOptions, narrow
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.narrow import narrow_box
-from mmgtune.diagnose.search import Found
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.searching import narrow
+from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.narrow import narrow_box
+from mmgtune.diagnose.searching.search import Found
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import tuned
 from mmgtune.trial import load_trials

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.inputs import _rounded_off
-from mmgtune.diagnose.noise import ChannelNoise, NoiseModel, estimate
-from mmgtune.diagnose.workbench import noise_levels
+from mmgtune.diagnose.bench.inputs import _rounded_off
+from mmgtune.diagnose.bench.noise import ChannelNoise, NoiseModel, estimate
+from mmgtune.diagnose.bench.workbench import noise_levels
 from mmgtune.trial import load_trials
 
 CHANNELS, RUNS, SAMPLES = 6, 4, 400

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from mmgtune.diagnose import diagnose
-from mmgtune.diagnose.of_hull import explained_by_hull, in_words
+from mmgtune.diagnose.bench.of_hull import explained_by_hull, in_words
 from mmgtune.effects import find_effect
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 from mmgtune import DiagnoseOptions, diagnose
-from mmgtune.diagnose.causes import Cause
-from mmgtune.diagnose.intervals import Estimate
-from mmgtune.diagnose.one_clock import clock_rate
+from mmgtune.diagnose.answering.one_clock import clock_rate
+from mmgtune.diagnose.causes.cause import Cause
+from mmgtune.diagnose.signatures.intervals import Estimate
 from mmgtune.effects import find_effect
 from mmgtune.trial import TrialSet
 from tests.hidden.plant import TUNING, WHITE, simulate

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from mmgtune.diagnose import plan_diagnosis
-from mmgtune.diagnose.hypotheses import known_causes
+from mmgtune.diagnose.bench.hypotheses import known_causes
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import with_effects
 from mmgtune.trial import load_trials

@@ -7,16 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions, workbench
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.hypotheses import known_causes
-from mmgtune.diagnose.linear import linearise
-from mmgtune.diagnose.refitter import HARDLY_MORE, HOPELESS, Known, Refitter
-from mmgtune.diagnose.refitting import Refitting
-from mmgtune.diagnose.screening import scores
-from mmgtune.diagnose.search import _as_given as as_given
-from mmgtune.diagnose.shortlist import Shortlist
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.bench import workbench
+from mmgtune.diagnose.bench.hypotheses import known_causes
+from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.refitter import HARDLY_MORE, HOPELESS, Known, Refitter
+from mmgtune.diagnose.searching.refitting import Refitting
+from mmgtune.diagnose.searching.search import _as_given as as_given
+from mmgtune.diagnose.searching.shortlist import Shortlist
+from mmgtune.diagnose.signatures.linear import linearise
+from mmgtune.diagnose.signatures.screening import scores
 from mmgtune.fitting.least_squares import LeastSquaresResult
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, with_effects

@@ -7,7 +7,7 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.diagnose.retuned import Retuned, besides, far_off, in_words, unlike_any, weighed
+from mmgtune.diagnose.signatures.retuned import Retuned, besides, far_off, in_words, unlike_any, weighed
 from mmgtune.profile import load_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials

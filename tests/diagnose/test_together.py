@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
-from mmgtune.diagnose.contributions import share_lost
+from mmgtune.diagnose.causes.contributions import share_lost
 from mmgtune.effects.signs import signed
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials

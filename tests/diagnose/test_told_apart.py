@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
-from mmgtune.diagnose.separate import _apart, holds, menu
+from mmgtune.diagnose.answering.separate import _apart, holds, menu
 from mmgtune.motions import simulate_trials as sailed
 from mmgtune.orders import run_manoeuvre
 from mmgtune.profile import load_profile, with_effects

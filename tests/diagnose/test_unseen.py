@@ -9,13 +9,13 @@ from scipy.signal import lfilter
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.gain import Gain, held_out
-from mmgtune.diagnose.hypotheses import known_causes
-from mmgtune.diagnose.noise import ChannelNoise
-from mmgtune.diagnose.search import Found
-from mmgtune.diagnose.unseen import Beside, Unseen
-from mmgtune.diagnose.workbench import Point, Workbench, make_workbench
+from mmgtune.diagnose.bench.hypotheses import known_causes
+from mmgtune.diagnose.bench.noise import ChannelNoise
+from mmgtune.diagnose.bench.workbench import Point, Workbench, make_workbench
+from mmgtune.diagnose.held_out.gain import Gain, held_out
+from mmgtune.diagnose.held_out.unseen import Beside, Unseen
+from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.search import Found
 from mmgtune.fitting import ComparedTrials
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, with_effects

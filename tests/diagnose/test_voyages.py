@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
-from mmgtune.diagnose.legs import differences
-from mmgtune.diagnose.voyages import choose_windows, looked_at
+from mmgtune.diagnose.voyages.differences import differences
+from mmgtune.diagnose.voyages.windows import choose_windows, looked_at
 from mmgtune.errors import TrialError
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_voyages

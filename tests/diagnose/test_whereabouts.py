@@ -10,8 +10,8 @@ from scipy.stats import ttest_1samp
 
 from mmgtune.diagnose.evidence import ResidualForces
 from mmgtune.diagnose.evidence.forces import time_since_order
-from mmgtune.diagnose.leftover import Leftover, by_chance, offsets_of
-from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
+from mmgtune.diagnose.evidence.leftover import Leftover, by_chance, offsets_of
+from mmgtune.diagnose.evidence.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 

@@ -8,11 +8,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from mmgtune.diagnose import search
-from mmgtune.diagnose.hypotheses import Hypothesis
-from mmgtune.diagnose.refit import Refit, believable_first, kin_among, rivals_among
-from mmgtune.diagnose.refitting import Refitting
-from mmgtune.diagnose.search import Step
+from mmgtune.diagnose.bench.hypotheses import Hypothesis
+from mmgtune.diagnose.searching import search
+from mmgtune.diagnose.searching.refit import Refit, believable_first, kin_among, rivals_among
+from mmgtune.diagnose.searching.refitting import Refitting
+from mmgtune.diagnose.searching.search import Step
 from mmgtune.effects import find_effect
 
 N_RESIDUALS, BEFORE = 10_000, 15_000.0

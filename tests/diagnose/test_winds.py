@@ -5,18 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions, beliefs, winds
-from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.causes import Cause
-from mmgtune.diagnose.hypotheses import known_causes
-from mmgtune.diagnose.inputs import DRAWS, changes
-from mmgtune.diagnose.intervals import Estimate
-from mmgtune.diagnose.judging import _deformed
-from mmgtune.diagnose.leftover import leftover
-from mmgtune.diagnose.linear import linearise
-from mmgtune.diagnose.search import look
-from mmgtune.diagnose.winds import ALONG, other_winds
-from mmgtune.diagnose.workbench import TOLERANCE, make_workbench
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.answering.judging import _deformed
+from mmgtune.diagnose.bench import beliefs, winds
+from mmgtune.diagnose.bench.hypotheses import known_causes
+from mmgtune.diagnose.bench.inputs import DRAWS, changes
+from mmgtune.diagnose.bench.winds import ALONG, other_winds
+from mmgtune.diagnose.bench.workbench import TOLERANCE, make_workbench
+from mmgtune.diagnose.causes.cause import Cause
+from mmgtune.diagnose.evidence.leftover import leftover
+from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.search import look
+from mmgtune.diagnose.signatures.intervals import Estimate
+from mmgtune.diagnose.signatures.linear import linearise
 from mmgtune.effects import find_effect
 from mmgtune.model import Model
 from mmgtune.motions import simulate_trials

@@ -13,13 +13,14 @@ import pandas as pd
 import pytest
 import scipy.io
 
-from mmgtune.importing import matlab, propose_map, workbook
-from mmgtune.importing.dates import Dates
-from mmgtune.importing.degrees import degrees
-from mmgtune.importing.numerals import numbers_in
+from mmgtune.importing import propose_map
+from mmgtune.importing.cells.dates import Dates
+from mmgtune.importing.cells.degrees import degrees
+from mmgtune.importing.cells.numerals import numbers_in
+from mmgtune.importing.cells.stopwatch import in_digits, of_digits
+from mmgtune.importing.formats import matlab, workbook
+from mmgtune.importing.formats.sides import sided
 from mmgtune.importing.proposing.sampling import sample_of
-from mmgtune.importing.sides import sided
-from mmgtune.importing.stopwatch import in_digits, of_digits
 from mmgtune.limits import MATLAB_BYTES, SHEET_BYTES
 
 from .made import MAP, UNITLESS, close, imported, printed, refusal, said, with_sides, write_csv

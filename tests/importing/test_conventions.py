@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmgtune.importing import conventions, parse_map
-from mmgtune.importing.mapping import Source
+from mmgtune.importing.maps.mapping import Source
 from mmgtune.importing.record import converted, unwrapped
 from mmgtune.units import DEG, KNOT
 from tests.importing.made import MAP, imported, logged, refusal, said, suzaku, turn, write_csv

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_smoothing_spline
 
-from mmgtune.importing.digits import _Smoothing, print_step, within_digits
+from mmgtune.importing.cells.digits import _Smoothing, print_step, within_digits
 
 
 @pytest.mark.parametrize("lam", [1e-6, 1e-2, 1.0, 1e2, 1e4])

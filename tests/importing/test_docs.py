@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 from mmgtune.importing import parse_map
-from mmgtune.importing.quantities import QUANTITIES
-from mmgtune.importing.reading_map import COLUMN_KEYS, TABLES
+from mmgtune.importing.maps.quantities import QUANTITIES
+from mmgtune.importing.maps.reading_map import COLUMN_KEYS, TABLES
 
 PAGE = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
 SECTION = PAGE.split("## Map of a log")[1].split("\n## ")[0]

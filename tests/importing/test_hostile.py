@@ -11,7 +11,7 @@ import pytest
 
 from mmgtune.errors import LogError, OutputError
 from mmgtune.importing import import_logs, load_map, parse_map, propose_map
-from mmgtune.importing.nmea import checksum
+from mmgtune.importing.formats.nmea import checksum
 from mmgtune.trial import read_trial
 from mmgtune.units import DEG
 from tests.importing.made import (
@@ -215,7 +215,7 @@ def test_sides_that_cannot_be_read(log, columns, cells, words):
 
 
 def test_sides_that_come_late_in_a_long_log(log, columns, monkeypatch):
-    monkeypatch.setattr("mmgtune.importing.text.BLOCK", 100)
+    monkeypatch.setattr("mmgtune.importing.formats.text.BLOCK", 100)
     size = columns["rudder"]
     columns["rudder"] = [*(f"{one:.9f}" for one in size[:100]), *with_sides(size[100:])]
     refused(write_csv(log, columns), "only some cells of the column say a side", "here a number has none")
@@ -471,8 +471,8 @@ def test_nothing_is_replaced_silently(log, columns):
 
 
 def test_long_logs_are_thinned(log, columns, monkeypatch):
-    monkeypatch.setattr("mmgtune.importing.table.MOST_ROWS", 150)
-    monkeypatch.setattr("mmgtune.importing.text.BLOCK", 40)
+    monkeypatch.setattr("mmgtune.importing.formats.table.MOST_ROWS", 150)
+    monkeypatch.setattr("mmgtune.importing.formats.text.BLOCK", 40)
     report = said(write_csv(log, columns))
     assert "the log has 400 rows; every 4th was kept, 100 in all" in report
     assert imported(log).t[1] == pytest.approx(4.0)

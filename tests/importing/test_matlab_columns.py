@@ -6,8 +6,8 @@ import pytest
 import scipy.io
 
 from mmgtune.importing import import_logs, parse_map, propose_map
-from mmgtune.importing.matlab import variables
-from mmgtune.importing.matlab_columns import columns_of, runs_in
+from mmgtune.importing.formats.matlab import variables
+from mmgtune.importing.formats.matlab_columns import columns_of, runs_in
 from mmgtune.importing.proposing.words import numbered, quantity_named
 from mmgtune.units import DEG
 

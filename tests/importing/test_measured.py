@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 from mmgtune.importing import import_logs, load_map
-from mmgtune.importing.digits import print_step
+from mmgtune.importing.cells.digits import print_step
 from mmgtune.manoeuvres import Track, find_executes, manoeuvre_kind, turning_indices
 from mmgtune.physics.frame import to_earth
 from mmgtune.trial import load_trials

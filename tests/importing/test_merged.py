@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from mmgtune.importing import propose_map
-from mmgtune.importing.seldom import held, is_seldom
+from mmgtune.importing.cells.seldom import held, is_seldom
 
 from .made import MAP, close, imported, logged, turn, write_csv
 

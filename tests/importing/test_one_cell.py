@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from mmgtune.importing import import_logs, parse_map, propose_map
-from mmgtune.importing.position_pair import pair_in
+from mmgtune.importing.cells.position_pair import pair_in
 from tests.command import run
 
 from .made import MAP, close, imported, turn, write_csv

@@ -6,8 +6,8 @@ import pytest
 
 from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, parse_map, propose_map
-from mmgtune.importing.periods import Periods
-from mmgtune.importing.stopwatch import times_told
+from mmgtune.importing.cells.periods import Periods
+from mmgtune.importing.cells.stopwatch import times_told
 
 from .made import UNITLESS, close, imported, logged, refusal, turn, write_csv
 

@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 from mmgtune.importing import parse_map, propose_map
-from mmgtune.importing.numerals import numbers_in
-from mmgtune.importing.thousands import in_thousands
+from mmgtune.importing.cells.numerals import numbers_in
+from mmgtune.importing.cells.thousands import in_thousands
 from tests.command import run
 
 from .made import MAP, close, imported, logged, refusal, turn, write_csv

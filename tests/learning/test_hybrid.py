@@ -24,7 +24,7 @@ from mmgtune.networks import HybridPredictor, load_network
 from mmgtune.options.learning import HybridOptions
 from mmgtune.profile import load_profile
 from mmgtune.report import render
-from mmgtune.report.hybrid_page import HybridRecord, build
+from mmgtune.report.pages.hybrid_page import HybridRecord, build
 from mmgtune.report.wording import shown
 from mmgtune.scores import L_MSE
 from mmgtune.trial import load_trials

@@ -20,8 +20,8 @@ from mmgtune.posterior.room import make_room, room_of
 from mmgtune.predicting.asked import Approach
 from mmgtune.predictor import as_predictor
 from mmgtune.profile import load_profile
-from mmgtune.report.plan_page import beside_its_bar
-from mmgtune.report.svg import LETTERS
+from mmgtune.report.figures.svg import LETTERS
+from mmgtune.report.pages.plan_page import beside_its_bar
 from tests.command import run
 from tests.hidden.cases import null
 from tests.hidden.plant import simulate

@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.legs import QUANTITIES, Difference
-from mmgtune.report.differences import axis_words, differences
-from mmgtune.report.plot import Bar, Dots, Line
+from mmgtune.diagnose.voyages.differences import QUANTITIES, Difference
+from mmgtune.report.figures.differences import axis_words, differences
+from mmgtune.report.figures.plot import Bar, Dots, Line
 
 CURRENT, RESISTANCE = QUANTITIES
 VOYAGES = tuple(f"voyage_{k:02d}" for k in range(1, 10))

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from mmgtune.report import html, load, render
-from mmgtune.report.kinds import KINDS
+from mmgtune.report.pages.kinds import KINDS
 from tests import axe
 from tests.browser import chromium
 

@@ -21,7 +21,7 @@ from mmgtune.profile import load_profile
 from mmgtune.provenance import made_by
 from mmgtune.recording import write_simulation, write_validation
 from mmgtune.report import approaches, codes, load, render
-from mmgtune.report.kinds import KINDS
+from mmgtune.report.pages.kinds import KINDS
 from mmgtune.simulating import simulate
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate

@@ -13,9 +13,10 @@ import pytest
 
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, fit, write_run
-from mmgtune.report import motions, render
-from mmgtune.report.kinds import KINDS
+from mmgtune.report import render
+from mmgtune.report.figures import motions
 from mmgtune.report.load import find
+from mmgtune.report.pages.kinds import KINDS
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 from tests.twin import sail, twin, with_value

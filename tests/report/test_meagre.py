@@ -11,8 +11,8 @@ import pytest
 
 from mmgtune.errors import OptionError, OutputError
 from mmgtune.files import write_text
-from mmgtune.report import motions as motions_of_page
 from mmgtune.report import render
+from mmgtune.report.figures import motions as motions_of_page
 
 from . import fake_run
 from .conftest import read

@@ -10,34 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.hypotheses import known_causes, of_runs
+from mmgtune.diagnose.bench.hypotheses import known_causes, of_runs
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
-from mmgtune.report import (
-    advice,
-    band_scores,
-    check_page,
-    confidence,
-    diagnosis_page,
-    fleet_figures,
-    html,
-    learning_page,
-    load,
-    models_page,
-    motion_block,
-    motions,
-    svg,
-    tables,
-    ticks,
-    tracks,
-    wording,
-)
+from mmgtune.report import advice, band_scores, confidence, html, load, motion_block, tables, wording
 from mmgtune.report.blocks import Fold, Motions, Page, Picture, Section, Table
 from mmgtune.report.common import cards_of_misfit
+from mmgtune.report.figures import fleet_figures, motions, svg, ticks, tracks
+from mmgtune.report.figures.plot import Axis, Bar, Dots, Figure, Line, Look, Panel, Words
 from mmgtune.report.html import embedded
-from mmgtune.report.kinds import KINDS
 from mmgtune.report.markdown import escaped
-from mmgtune.report.plot import Axis, Bar, Dots, Figure, Line, Look, Panel, Words
+from mmgtune.report.pages import check_page, diagnosis_page, learning_page, models_page
+from mmgtune.report.pages.kinds import KINDS
 from mmgtune.trial import load_trials
 
 

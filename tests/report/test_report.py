@@ -15,9 +15,10 @@ from pathlib import Path
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.report import findings, kinds, render
+from mmgtune.report import findings, render
 from mmgtune.report.blocks import Page, Prose, Section
 from mmgtune.report.load import Kind
+from mmgtune.report.pages import kinds
 from mmgtune.report.wording import shown
 
 from . import fake_run

@@ -4,10 +4,11 @@ import json
 
 import pytest
 
-from mmgtune.diagnose.contributions import Contribution
-from mmgtune.diagnose.whereabouts import whereabouts
-from mmgtune.report import svg, unexplained
+from mmgtune.diagnose.causes.contributions import Contribution
+from mmgtune.diagnose.evidence.whereabouts import whereabouts
 from mmgtune.report.blocks import Picture
+from mmgtune.report.figures import svg
+from mmgtune.report.pages import unexplained
 from tests.diagnose.test_whereabouts import run as force_run
 
 

@@ -15,8 +15,8 @@ from mmgtune import DiagnoseOptions, FitOptions, LeaveOutOptions, diagnose, fit,
 from mmgtune.importing import import_logs, load_map
 from mmgtune.profile import load_profile
 from mmgtune.trial import Trial, check_trial, check_trials, load_trials, oddities
+from mmgtune.trial.checks.set_checks import odd_in_words
 from mmgtune.trial.kinematics import FITS, Reading, position_misfits
-from mmgtune.trial.set_checks import odd_in_words
 
 from .made import DEG, made, said
 

@@ -9,7 +9,7 @@ from mmgtune.diagnose import diagnose
 from mmgtune.options import DiagnoseOptions
 from mmgtune.physics.frame import to_earth
 from mmgtune.trial import check_trial, load_trials
-from mmgtune.trial.in_parts import changes_within
+from mmgtune.trial.checks.in_parts import changes_within
 from mmgtune.units import DEG
 
 TRIALS = load_trials("suzaku").trials

@@ -13,15 +13,15 @@ import pytest
 from mmgtune.physics.quantities import HELD, UNKNOWN, Surroundings
 from mmgtune.predictor import cases_from
 from mmgtune.trial import windows
-from mmgtune.trial.current import layer_shares
-from mmgtune.trial.surroundings import SOURCES, measured_around, surroundings
+from mmgtune.trial.around.current import layer_shares
+from mmgtune.trial.around.surroundings import SOURCES, measured_around, surroundings
 from tests.trial.made import made
 
 ROOT = Path(__file__).parents[2]
 
 FIELD = ("physics/quantities.py", "    wind_known: Lanes", "    stream_east: Lanes\n    wind_known: Lanes")
 SOURCE = (
-    "trial/surroundings.py",
+    "trial/around/surroundings.py",
     "measured_waves(trial),\n",
     """measured_waves(trial),
     ("stream_east",): lambda trial, _: trial.extra.get("stream", 0.0 * trial.t)[:, None],

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmgtune.trial import check_trial, load_trials
-from mmgtune.trial.swell import swell_findings
+from mmgtune.trial.checks.swell import swell_findings
 
 from .made import DEG, made
 

@@ -18,8 +18,8 @@ from mmgtune.trial import (
     windows,
     write_trial,
 )
-from mmgtune.trial import voyage as reading
 from mmgtune.trial.parquet import GROUP_ROWS
+from mmgtune.trial.voyages import voyage as reading
 from tests.trial.made import made, with_value, write_raw
 from tests.voyages.conftest import rows, with_nan, write_foreign
 

@@ -11,9 +11,9 @@ import numpy as np
 from ... import units
 from ...arrays import FloatArray
 from ...phrases import listed
+from ..cells.stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, in_digits
+from ..cells.time_parts import WORDS
 from ..clock import falls
-from ..stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, in_digits
-from ..time_parts import WORDS
 from .parted import seconds_of, time_parts
 from .sampling import Sample, seconds
 from .words import TIME

@@ -10,8 +10,8 @@ from ... import units
 from ...arrays import FloatArray
 from ...errors import LogError
 from ...units import DEG
-from ..headers import find_column
-from ..mapping import LogMap
+from ..cells.headers import find_column
+from ..maps.mapping import LogMap
 from .clocks import Clock, in_seconds
 from .sampling import Sample, sample_of
 from .windows import Windows

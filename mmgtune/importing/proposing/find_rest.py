@@ -10,9 +10,9 @@ import numpy as np
 
 from ... import units
 from ...inputs import INPUTS
-from ..digits import print_step
-from ..quantities import known_quantity, meaning, quantity_of
-from ..sides import takes_side
+from ..cells.digits import print_step
+from ..formats.sides import takes_side
+from ..maps.quantities import known_quantity, meaning, quantity_of
 from .finder import FEW_DIGITS, Finder
 from .guess import ASKED, LIKELY, MARK, Guess
 from .joined import is_whole

@@ -8,8 +8,8 @@ from typing import Any
 
 from ...errors import LogError, Problem
 from ...phrases import listed
-from ..dates import ORDERS, Dates, Shows, order_told
-from ..stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY
+from ..cells.dates import ORDERS, Dates, Shows, order_told
+from ..cells.stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY
 from .clocks import Clock, clocks, format_named, in_order
 from .finder import MOST_COLUMNS, Finder, moves
 from .guess import ASKED, LIKELY, MARK, SURE, Guess

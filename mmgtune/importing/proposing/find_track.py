@@ -13,7 +13,7 @@ from ... import units
 from ...phrases import listed
 from ...trial.kinematics import FITS
 from ...units import DEG
-from ..headers import bare
+from ..cells.headers import bare
 from .bearings import Track, keys_of, tracks
 from .clocks import in_seconds, likely_units
 from .find_time import CLEARLY, time_unit

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ... import units
-from ..degrees import DDMM
+from ..cells.degrees import DDMM
 from .clocks import Clock
 from .guess import LIKELY, SURE, Guess
 from .look import Look

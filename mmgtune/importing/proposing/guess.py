@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..mapping import ASKS
+from ..maps.mapping import ASKS
 
 SURE, LIKELY, ASKED = "sure", "likely", "asked"
 """How far a guess is to be relied on: motion or name and unit show it, it is the likeliest, or it is a question."""

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from ...arrays import FloatArray
-from ..degrees import of_ddmm
-from ..headers import unit_in
-from ..numerals import number_in
-from ..position_pair import MOST, pair_in
-from ..position_parts import HEMISPHERES, letters_in, position_of
-from ..table import MISSING
+from ..cells.degrees import of_ddmm
+from ..cells.headers import unit_in
+from ..cells.numerals import number_in
+from ..cells.position_pair import MOST, pair_in
+from ..cells.position_parts import HEMISPHERES, letters_in, position_of
+from ..formats.table import MISSING
 from .finder import Finder
 from .sampling import Sample
 from .words import DATE, TIME

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...trial.cross_checks import ADVANCE
+from ...trial.checks.cross_checks import ADVANCE
 from ...units import DEG
 from ..conventions import RudderEvidence, rudder_evidence
 from .look import Look

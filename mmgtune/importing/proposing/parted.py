@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...arrays import FloatArray
-from ..periods import Periods
-from ..time_parts import going_on, not_parts
+from ..cells.periods import Periods
+from ..cells.time_parts import going_on, not_parts
 from .sampling import Sample
 from .words import DATE, TIME, plain
 

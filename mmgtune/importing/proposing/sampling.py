@@ -18,18 +18,18 @@ from ...arrays import FloatArray
 from ...errors import LogError, Problem, reason
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from ...phrases import counted, listed
-from ..degrees import degrees
-from ..forms import form_of, refuse_binary
-from ..mapping import LogMap, TimeSource
-from ..numerals import holds_numbers, numbers_in
-from ..parquet_log import batches, being_read, schema_of
-from ..position_parts import HEMISPHERES
-from ..sides import midships, sided, takes_side
-from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
-from ..table import MISSING
-from ..text import PEEK, Lines, fields_of, start_of
-from ..thousands import CLOSED, in_thousands
-from ..with_units import is_with_unit, numbers_with_unit
+from ..cells.degrees import degrees
+from ..cells.numerals import holds_numbers, numbers_in
+from ..cells.position_parts import HEMISPHERES
+from ..cells.stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
+from ..cells.thousands import CLOSED, in_thousands
+from ..cells.with_units import is_with_unit, numbers_with_unit
+from ..formats.forms import form_of, refuse_binary
+from ..formats.parquet_log import batches, being_read, schema_of
+from ..formats.sides import midships, sided, takes_side
+from ..formats.table import MISSING
+from ..formats.text import PEEK, Lines, fields_of, start_of
+from ..maps.mapping import LogMap, TimeSource
 from .words import DATE, TIME, known_unit, quantity_named
 
 ROWS = 60_000
@@ -133,7 +133,7 @@ class Sample:
         name = self.names[k].strip()
         if not name or len(name) > 200 or not name.isprintable() or self.layout.get("header") is False:
             return k + 1
-        from ..headers import find_column
+        from ..cells.headers import find_column
 
         return name if find_column(name, self.names) == k else k + 1
 
@@ -337,7 +337,7 @@ def _plain(column: Any) -> Any:
 
 
 def _of_workbook(path: Path) -> list[Sample]:
-    from ..workbook import logs_among, outlines_of, passed_over
+    from ..formats.workbook import logs_among, outlines_of, passed_over
 
     outlines = outlines_of(path)
     logs = logs_among(outlines) or [one.name for one in outlines][-1:]
@@ -370,7 +370,7 @@ def _alike(one: tuple[list[str], int | None], other: tuple[list[str], int | None
 
 def _head(rows: Sequence[Sequence[Any]]) -> tuple[list[str], int | None]:
     """The names of the columns of a sheet, and the row that they stand in."""
-    from ..workbook import as_text
+    from ..formats.workbook import as_text
 
     start = [[as_text(cell) or "" for cell in row] for row in rows]
     _, header, _, width = heading(start)
@@ -380,7 +380,7 @@ def _head(rows: Sequence[Sequence[Any]]) -> tuple[list[str], int | None]:
 def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
     import pandas as pd
 
-    from ..workbook import as_text, formulas_in, hold_results, sheet_of
+    from ..formats.workbook import as_text, formulas_in, hold_results, sheet_of
 
     sheet = sheet_of(path, name)
     start = [[as_text(cell) or "" for cell in row] for row in sheet.rows[:HEADING]]
@@ -399,8 +399,8 @@ def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
 
 
 def _of_matlab(path: Path) -> list[Sample]:
-    from ..matlab import variables
-    from ..matlab_columns import columns_in, runs_in
+    from ..formats.matlab import variables
+    from ..formats.matlab_columns import columns_in, runs_in
 
     held = variables(path)
     runs = runs_in(held)

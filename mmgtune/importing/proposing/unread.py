@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...phrases import counted
-from ..numerals import numbers_in
-from ..sides import midships
-from ..table import MISSING
-from ..thousands import first_marked, in_thousands
+from ..cells.numerals import numbers_in
+from ..cells.thousands import first_marked, in_thousands
+from ..formats.sides import midships
+from ..formats.table import MISSING
 from .finder import Finder
 from .guess import MARK
 

@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
-from ...trial.motion_checks import spikes
+from ...trial.checks.motion_checks import spikes
+from ..cells.seldom import held
 from ..clock import uniform
-from ..mapping import TimeSource
+from ..maps.mapping import TimeSource
 from ..record import unwrapped
-from ..seldom import held
 
 MOST = 120
 """Windows of a log."""

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from ... import units
-from ..headers import bare, unit_in
+from ..cells.headers import bare, unit_in
 
 DATE, TIME, ROLL, ORDER, LOG_SPEED, OTHER = "date", "time", "roll", "order", "log speed", "other"
 """What names may say besides quantities: OTHER is anything that no trial holds."""

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..quantities import meaning
+from ..maps.quantities import meaning
 from .guess import Guess
 from .sampling import Sample
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mmgtune.importing.mapping import TABLES
-from mmgtune.importing.quantities import QUANTITIES
-from mmgtune.importing.reading_map import COLUMN_KEYS
+from mmgtune.importing.maps.mapping import TABLES
+from mmgtune.importing.maps.quantities import QUANTITIES
+from mmgtune.importing.maps.reading_map import COLUMN_KEYS
 from tests.importing.made import MAP
 
 from ..mutating import encoded, line_doubled, line_emptied, line_removed, mutated_bytes, pick, several

@@ -10,7 +10,7 @@ import numpy as np
 
 from mmgtune.errors import LogError
 from mmgtune.importing import propose_map
-from mmgtune.importing.reading_map import parse_map
+from mmgtune.importing.maps.reading_map import parse_map
 from mmgtune.toml_reading import toml_of
 
 from ..mutating import TEXTS, encoded, odd_text, pick

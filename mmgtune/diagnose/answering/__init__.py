@@ -1,0 +1,7 @@
+"""From the outcome of a search to the answer.
+
+judging           causes, their rivals and what they gain
+verdict           what was found; saying: in words a captain understands
+detecting         what the trials could have told; separate: the trial that would tell
+jumped            runs whose position jumps; one_clock: two scales that are one clock
+"""

@@ -1,0 +1,358 @@
+"""From the outcome of a search to the answer: its causes, their rivals and what they gain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...backends import STATES
+from ...fitting.one_sided import coverage_notes, followers
+from ...hooks import Hooks
+from ...options import DiagnoseOptions
+from ...options.scoring import WINDOW
+from ...phrases import listed
+from ...profile import ShipProfile
+from ...trial import Coverage, Trial
+from ..bench.hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
+from ..bench.of_hull import in_words as explained_in_words
+from ..bench.workbench import Point, Workbench
+from ..causes.belief import MOSTLY
+from ..causes.by_run import ByRun
+from ..causes.cause import Candidate, Cause, Trace
+from ..causes.contributions import Aside, Contribution, contributions, with_only
+from ..causes.doubted import Doubted, Leading
+from ..evidence.gathering import error_of, evidence
+from ..evidence.leftover import NOTICED, Leftover, leftover
+from ..held_out.gain import J_of, held_out
+from ..held_out.unseen import Unseen
+from ..result import Diagnosis
+from ..searching.instead import instead_of_tuning
+from ..searching.refit import WORTH, Refit, kin_among
+from ..searching.search import Found, Step, rivals_of, step_of
+from ..signatures.intervals import Estimate, estimates
+from ..signatures.retuned import retuned, unlike_any
+from ..voyages.differences import Difference
+from ..voyages.windows import Choice
+from .detecting import detectability
+from .separate import Suggestion, suggest
+
+OF_ANOTHER_FORM = 1.0
+"""Variance beyond noise, as a share of it, from which on what a single cause leaves says that its form is another."""
+
+
+MUCH_OPEN = 2.0
+"""Variance that inputs leave open, over that of the noise, from which windows are advised where runs are long."""
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """Makes answers from outcomes of the search; holds what all answers of a diagnosis share.
+
+    profile, options, provenance  as given
+    asked     hypotheses that were looked for, and those that do the same as a target
+    unseen    what answers are judged by: the trials kept for testing, or each run in turn
+    before    what the model without any cause leaves
+    traces    what was set aside; of_traces: what they remove of ``Leftover.unknown``
+    choice    windows of voyages, None for trials; differing: what differs between the voyages
+    """
+
+    bench: Workbench
+    profile: ShipProfile
+    options: DiagnoseOptions
+    provenance: Mapping[str, Any]
+    hooks: Hooks
+    asked: Sequence[Hypothesis]
+    unseen: Unseen
+    before: Leftover
+    traces: Sequence[Aside]
+    of_traces: float
+    choice: Choice | None
+    differing: Sequence[Difference]
+
+    def answer(self, found: Found, brought: Sequence[Contribution]) -> tuple[Diagnosis, Found]:
+        """The answer, and the causes it is about: those found, or a smaller set where only that is believed.
+
+        brought  what each cause contributes
+        """
+        result = self._compared(self._judged(found, brought), found)
+        result, found = self._without_doubtful(result, found, brought)
+        for causes, doubted in _fewer(result, found) if result.unclear and not self.hooks.stop() else []:
+            fewer = with_only(self.bench, found, causes)
+            brought = contributions(self.bench, fewer, self.unseen)
+            other = self._compared(self._judged(fewer, brought, doubted), fewer)
+            enough = other.explains_all if other.differs_by_run else other.explains_nearly_all
+            if other.names_causes and enough:
+                result, found = other, fewer
+                break
+            if doubted is None and other.explained_share >= MOSTLY and not other.unclear:
+                result, found = other, fewer  # as little is believed, and it takes less
+            if doubted is not None:
+                result = replace(result, leading=Leading.of(result, other))
+        if result.is_chance and self._may_be_noise(result) and not self.hooks.stop():
+            alone = with_only(self.bench, found, [])
+            other = self._judged(alone, [])
+            result, found = (other, alone) if other.verdict == "none" else (result, found)
+        if result.verdict == "unexplained" and not result.misses_test:
+            result = replace(result, whereabouts=error_of(self.bench, found, self.before, result.leftover))
+        elif result.verdict != "interrupted":
+            result = replace(result, moved=tuple(retuned(self.bench, found.final)))
+        if result.verdict == "none" and self.choice is None:
+            self.hooks.on_phase("asking what re-tuning may stand for")
+            result = replace(result, instead=instead_of_tuning(self.bench, found.base, self.asked))
+        return result, found
+
+    def _may_be_noise(self, result: Diagnosis) -> bool:
+        """Whether what the re-tuned model leaves is next to nothing, or has no shape and is next to nothing beside
+        noise of the sensors that fades slowly."""
+        shapeless = not self.before.structured and result.chi2[0] < 1.0 + NOTICED
+        return shapeless or not self.before.noticed
+
+    def _without_doubtful(
+        self, result: Diagnosis, found: Found, brought: Sequence[Contribution]
+    ) -> tuple[Diagnosis, Found]:
+        """The answer without small causes that cannot be told from others, the smallest first, as long as it holds
+        without them; a small third may be all that keeps two from being believed."""
+        while result.groups and len(found.causes) > 1 and not self.hooks.stop():
+            groups = {tag: others for tag, *others in result.groups}
+            doubtful = [
+                (one.seen, cause, one)
+                for cause, one in zip(found.causes, brought, strict=True)
+                if one.little and cause.tag in groups
+            ]
+            if not doubtful:
+                break
+            _, cause, brings = min(doubtful, key=lambda one: one[0])
+            fewer = with_only(self.bench, found, [one for one in found.causes if one is not cause])
+            brought = contributions(self.bench, fewer, self.unseen)
+            other = self._compared(self._judged(fewer, brought), fewer)
+            if not (other.names_causes and other.explains_nearly_all):
+                break
+            trace = _trace(self.bench, Aside.of(self.bench, found, cause, brings, groups[cause.tag]))
+            result, found = replace(other, traces=(*result.traces, trace)), fewer
+        return result, found
+
+    def _judged(self, found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
+        """The answer before its causes are compared with their rivals."""
+        bench = self.bench
+        sizes = estimates(bench, found.final)
+        left = leftover(bench, found.final) if found.causes or found.finer_step else self.before
+        theta, alone = (_targets_of(bench, point) for point in (found.final, found.base))
+        coverage = Coverage.of(bench.trials, self.profile.L_pp)
+        causes = _causes(bench, found, sizes, self.unseen.test)
+        asked = [*zip(found.causes, brought, strict=True), *((one.hypothesis, one.contribution) for one in self.traces)]
+        of_hull = [said for cause, one in asked if (said := explained_in_words(bench, cause.tag, one.of_hull))]
+        notes = (
+            *coverage_notes(bench.model, bench.targets, coverage),
+            *_too_small(bench, found),
+            *_deformed(causes),
+            *of_hull,
+            *_left_open(bench, left, self.options),
+        )
+        return Diagnosis(
+            profile=self.profile,
+            options=self.options,
+            causes=tuple(causes),
+            traces=tuple(_trace(bench, one) for one in self.traces),
+            contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
+            groups=(),
+            candidates=tuple(_candidates(bench, found, self.unseen.test)),
+            detectability=tuple(detectability(bench, found.steps[0])) if found.steps else (),
+            suggestion=None,
+            gain=held_out(found, self.unseen),
+            leftover=left,
+            explained_share=_explained(found, self.before, left),
+            theta=theta,
+            retuned=alone,
+            coverage=coverage,
+            warnings=notes,
+            noise=_noise(bench),
+            chi2=(
+                _first(found).chi2 / max(1, bench.problem.n_residuals),
+                found.final.chi2 / max(1, bench.problem.n_residuals),
+            ),
+            evidence=evidence(bench, found, self.before, left),
+            provenance=self.provenance,
+            choice=self.choice,
+            differing=tuple(self.differing),
+            doubted=doubted,
+            more=found.more,
+            read_off=bench.read_off,
+            unlike_any=unlike_any(retuned(bench, found.final)) if any(one.by for one in found.causes) else "",
+            of_traces=self.of_traces if found.causes else 0.0,
+            wall_s=0.0,
+            interrupted=self.hooks.stop(),
+        )
+
+    def _compared(self, result: Diagnosis, found: Found) -> Diagnosis:
+        """The answer with the rivals that these trials cannot tell from its causes, where these are believed."""
+        if result.verdict in ("unexplained", "interrupted") or not found.causes:
+            return result
+        self.hooks.on_phase("comparing the causes with their rivals")
+        rivals = [rivals_of(self.bench, found, cause) for cause in found.causes]
+        if result.leftover.unknown > OF_ANOTHER_FORM and len(found.causes) == 1 and not rivals[0]:
+            step = step_of(found, found.causes[0])
+            rivals = [kin_among(step.refits) if step else []]
+        groups = tuple(
+            (cause.tag, *(rival.hypothesis.tag for rival in of))
+            for cause, of in zip(found.causes, rivals, strict=True)
+            if of
+        )
+        suggestion = _suggestion(self.bench, found, rivals)
+        return replace(result, groups=groups, suggestion=suggestion, interrupted=self.hooks.stop())
+
+
+def _fewer(result: Diagnosis, found: Found) -> list[tuple[list[Hypothesis], Doubted | None]]:
+    """Which of the causes found may be believed without the others, and what is doubted then: those whose size is told,
+    where others act much like them, for these may stand for nothing; else the first alone."""
+    unsized = {cause.tag for cause in result.causes if not cause.sized}
+    sized = {one.tag for one in found.causes} - unsized
+    needless = [one for one in found.causes if one.tag in unsized and sized.intersection(one.effect.akin)]
+    rest = [one for one in found.causes if one not in needless]
+    first = (found.causes[:1], Doubted.of(result))
+    return [(rest, None), first] if needless else [first]
+
+
+def _first(found: Found) -> Point:
+    """The re-tuned model before any correction of integration step or inputs."""
+    as_given = found.held is None and found.finer_step is None
+    return found.base if as_given else found.steps[0].base
+
+
+def leaves_much_open(trials: Sequence[Trial], left: Leftover, options: DiagnoseOptions) -> bool:
+    """Whether the inputs of long runs are known too seldom to follow these to their end: windows tell more of them."""
+    longest = max(trial.duration for trial in trials)
+    return options.restart is None and left.left_open >= MUCH_OPEN and longest >= 2.0 * WINDOW
+
+
+def _left_open(bench: Workbench, left: Leftover, options: DiagnoseOptions) -> list[str]:
+    """That windows would tell more of such runs."""
+    if not leaves_much_open(bench.trials, left, options):
+        return []
+    said = (
+        "what the inputs did between samples of their log grows to many times the noise in runs as long as these: "
+        f"windows that begin again tell more, restart={WINDOW:g}"
+    )
+    return [said]
+
+
+def _too_small(bench: Workbench, found: Found) -> list[str]:
+    """What the last look saw beyond chance, and did not believe since it is little and has rivals."""
+    last = found.steps[-1] if found.steps else None
+    if last is None or last.accepted or not last.refits or not last.rivals or last.refits[0].size >= WORTH:
+        return []
+    if last.refits[0].by_chance(bench.options.level) or last.refits[0].unvisited:
+        return []
+    tags = dict.fromkeys(refit.hypothesis.tag for refit in (last.refits[0], *last.rivals))
+    told = f"Something shows beyond chance that is too small to be told: {' or '.join(tags)}."
+    return [f"{told} Of the first of them it would be less than a {1.0 / WORTH:.0f}th of what is worth speaking of."]
+
+
+def _deformed(causes: Sequence[Cause]) -> list[str]:
+    """What is said of causes whose form ended at the end of what is thought possible."""
+    return [
+        f"Of {cause.tag} a part of its form ended at the end of its range ({listed(ended)}): its force is none of "
+        "those that are known, and its size may be off by more than is said."
+        for cause in causes
+        if (ended := cause.form_at_end)
+    ]
+
+
+def _targets_of(bench: Workbench, point: Point) -> dict[str, float]:
+    """Targets at a point, with what is tied to them, and what had leeway.
+
+    The profile's own value where a cause takes the place of a target.
+    """
+    values = bench.values(point)
+    own = {name: values[name] if name in values else bench.model.numbers()[name] for name in bench.tuned_alone}
+    return own | followers(bench.model.ties, own)
+
+
+def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test: Sequence[Trial]) -> list[Cause]:
+    """Causes by tag, those of several parameters together."""
+    causes: list[Cause] = []
+    if found.finer_step is not None:
+        causes.append(Cause(INTEGRATION_STEP, None, {}, 0.0, None))
+    if found.held is not None:
+        causes.append(Cause(INPUTS_HELD, None, {}, 0.0, None, words=found.held.sentence))
+    J_before = J_of(bench, found.base, test)
+    for tag, by in dict.fromkeys((h.tag, h.by) for h in found.causes):
+        own = [h for h in found.causes if (h.tag, h.by) == (tag, by)]
+        names = [name for h in own for name in h.names]
+        steps = [step for one in own if (step := step_of(found, one)) is not None]
+        J_after = J_of(bench, steps[0].refits[0].point, test) if steps else None
+        gain = 1.0 - J_after / J_before if J_before and J_after is not None else None
+        p_value = max((s.refits[0].p_value for s in steps), default=0.0)
+        estimated = {name: sizes[name] for name in names}
+        form = {name: sizes[name] for name in bench.believed.form_of(own[0].effect) if name in sizes}
+        effect, variant = own[0].effect, tuple(dict.fromkeys(name for h in own for name in h.variant))
+        runs = ByRun.of(effect, variant, by, own[0].groups, bench.trials, estimated) if by else None
+        causes.append(Cause(tag, effect, {} if by else estimated | form, p_value, gain, runs))
+    return causes
+
+
+def _trace(bench: Workbench, aside: Aside) -> Trace:
+    one = aside.hypothesis
+    runs = ByRun.of(one.effect, one.variant, one.by, one.groups, bench.trials, aside.estimates) if one.by else None
+    cause = Cause(one.tag, one.effect, {} if one.by else aside.estimates, aside.p_value, None, runs)
+    return Trace(cause, aside.contribution, tuple(aside.alike))
+
+
+def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
+    """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
+    if not found.steps:
+        return []
+    first = found.steps[0]
+    listed = [
+        Candidate(
+            r.hypothesis.tag,
+            tuple(r.hypothesis.variant),
+            r.score.score,
+            r.gain,
+            r.p_value,
+            J_of(bench, r.point, test) if _promising(r, first) else None,
+            r.unvisited if _promising(r, first) else "",
+            by=r.hypothesis.by,
+        )
+        for r in first.refits
+    ]
+    refitted = [r.hypothesis for r in first.refits]
+    others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
+    return listed + [
+        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, by=s.hypothesis.by) for s in others
+    ]
+
+
+def _promising(refit: Refit, step: Step) -> bool:
+    return refit.gain >= 0.05 * step.refits[0].gain
+
+
+def _explained(found: Found, before: Leftover, left: Leftover) -> float:
+    """Share of the error above the noise of the sensors on the trials looked at that the causes remove."""
+    if not found.causes:
+        return 0.0
+    whole = before.excess - (left.excess - left.unknown)
+    return 1.0 - max(left.unknown, 0.0) / whole if whole > 0.0 else 0.0
+
+
+def _suggestion(bench: Workbench, found: Found, rivals: Sequence[Sequence[Refit]]) -> Suggestion | None:
+    """The trial that would separate the first cause that has rivals."""
+    for cause, of in zip(found.causes, rivals, strict=True):
+        if of:
+            best = [(cause.tag, found.final), *((r.hypothesis.tag, r.point) for r in of[:3])]
+            return suggest(bench, best)
+    return None
+
+
+def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
+    """Noise by channel in SI units: white part, fading part and its autocorrelation."""
+    return {
+        name: {
+            "white": float(bench.sigma[STATES.index(name)] * np.sqrt(noise.white)),
+            "fading": float(bench.sigma[STATES.index(name)] * np.sqrt(noise.fading)),
+            "autocorrelation": noise.phi,
+        }
+        for name, noise in bench.noise.channels.items()
+    }

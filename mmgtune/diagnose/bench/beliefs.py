@@ -1,0 +1,106 @@
+"""What is believed before any trial is looked at, of coefficients that are not tuned and of the forms of effects.
+
+Captive tests and formulas are right to some per cent.  A hull that is held exactly at its profile's values leaves an
+error that is no cause, and that some effect of about the same form would be named for; so does a wind of exactly the
+force of a formula.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...components import split_name
+from ...effects import Effect
+from ...fitting.box import Box, base_of, choose_targets
+from ...model import Model
+
+PATTERNS = ("hull.*", "wake.C_*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
+"""What has leeway: forces of the hull, how its wake changes, mass and inertia with what moves along of the water."""
+
+
+@dataclass(frozen=True)
+class Beliefs:
+    """Standard deviations in the unit cube, about the profile's values.
+
+    leeway  coefficients beside the targets that may move a little
+    forms   parameters of the forms of effects, which move wherever their effect does
+    """
+
+    leeway: Mapping[str, float] = field(default_factory=dict)
+    forms: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, box: Box, loose: Sequence[str], share: float, shapes: Mapping[str, float]) -> Beliefs:
+        """Beliefs about coefficients known to a share of their values, and about forms with deviations in units of the
+        profile."""
+        leeway = share * np.abs(box.part(loose).pre) / box.part(loose).width
+        forms = {name: deviation / float(box.part([name]).width[0]) for name, deviation in shapes.items()}
+        return cls(dict(zip(loose, leeway.tolist(), strict=True)), forms)
+
+    @property
+    def deviations(self) -> Mapping[str, float]:
+        """Leeway and form deviations together."""
+        return {**self.leeway, **self.forms}
+
+    def form_of(self, effect: Effect) -> tuple[str, ...]:
+        """Parameters of the form of an effect, which are free wherever the effect is."""
+        return tuple(name for name in self.forms if name.startswith(f"{effect.kind}."))
+
+    def moving_with(self, names: Sequence[str]) -> tuple[list[str], list[int]]:
+        """Form parameters that the effects among ``names`` still lack, and the indices of the names to keep: all but
+        form parameters of effects that are not among them."""
+        moving = {split_name(base_of(name))[0] for name in names if name not in self.forms}
+        asked = [name for name in self.forms if split_name(name)[0] in moving and name not in names]
+        kept = [k for k, name in enumerate(names) if name not in self.forms or split_name(name)[0] in moving]
+        return asked, kept
+
+    def rows(self, names: Sequence[str]) -> tuple[list[int], FloatArray]:
+        """Indices of the names with a belief (k,), and a row for each (k, n_names): 1 over its standard deviation."""
+        deviations = self.deviations
+        places = [k for k, name in enumerate(names) if name in deviations]
+        return places, np.eye(len(names))[places] / np.array([deviations[names[k]] for k in places])[:, None]
+
+
+def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[str, ...]:
+    """Coefficients beside the targets that get leeway, as they are known to some per cent only."""
+    there = [pattern for pattern in PATTERNS if any(fnmatchcase(name, pattern) for name in model.profile.names())]
+    free = choose_targets(model, there, fixed)
+    return tuple(name for name in free if name not in targets and model.profile.value(name) != 0.0)
+
+
+def forms(model: Model, names: Sequence[str]) -> dict[str, float]:
+    """Parameters of the forms of all effects that any of the names is of, with their standard deviations."""
+    asked = {split_name(base_of(name))[0] for name in names}
+    return {
+        f"{effect.kind}.{name}": deviation
+        for effect in model.effects
+        if effect.kind in asked
+        for name, deviation in effect.form.items()
+    }
+
+
+def in_words(share: float, effects: Sequence[Effect]) -> list[dict[str, str]]:
+    """Rows on the leeway and on the forms of effects that were found, for the table of assumptions: name, value and
+    note."""
+    if share <= 0.0:
+        return []
+    hull = {
+        "name": ", ".join(PATTERNS),
+        "value": f"the profile's, beside the targets, with a standard deviation of {100.0 * share:.3g} %",
+        "note": "how well tests and formulas are expected to tell the hull",
+    }
+    off = [
+        {
+            "name": f"{effect.kind}.{name}",
+            "value": f"{effect.parameters[name].null:g} with a standard deviation of {deviation:g}",
+            "note": f"{effect.parameters[name].label}: how far ships are expected to be off",
+        }
+        for effect in effects
+        for name, deviation in effect.form.items()
+    ]
+    return [hull, *off]

@@ -1,0 +1,241 @@
+"""Noise of a channel: white, or white on top of something that fades slowly; and residuals freed of its memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...arrays import FloatArray, IntArray
+from ...backends import STATES, Cases
+from ...trial import Trial
+
+LAGS = 6
+"""Autocovariances a fading part is estimated from."""
+
+SLOWEST = 0.995
+"""Largest autocorrelation assumed of neighbouring samples."""
+
+DRAWS = 8
+"""Realisations of a noise model that show what fitting takes away from it."""
+
+ROUNDS = 6
+"""Times a noise model is corrected for that; each time about half of what is missing comes back."""
+
+NEAR = 4.0
+"""Variance over that of white noise beyond which what is left may be an error of the model, and is not made more of."""
+
+POSITIONS = ("x", "y")
+"""Channels of which a satellite receiver's errors wander far and slowly; those of a model show in the others too."""
+
+NOTICED = 4.0
+"""A fading part counts from this many standard errors of the autocorrelation."""
+
+
+@dataclass(frozen=True)
+class ChannelNoise:
+    """A first-order autoregressive part plus white noise, in the units of the residuals.
+
+    phi     autocorrelation of neighbouring samples of the fading part
+    fading  its variance
+    white   variance of the white part
+    """
+
+    phi: float = 0.0
+    fading: float = 0.0
+    white: float = 1.0
+
+    @property
+    def variance(self) -> float:
+        """Variance of a sample."""
+        return self.fading + self.white
+
+    @property
+    def autocovariance(self) -> FloatArray:
+        """(LAGS + 1,) of neighbouring samples, the variance first."""
+        found = self.fading * self.phi ** np.arange(LAGS + 1.0)
+        found[0] += self.white
+        return np.asarray(found)
+
+    @property
+    def filter(self) -> tuple[float, float, float]:
+        """phi, theta, sigma of the process e_k = phi e_(k-1) + a_k + theta a_(k-1) with a_k of deviation sigma."""
+        if self.fading <= 0.0:
+            return 0.0, 0.0, float(np.sqrt(self.white))
+        driving = self.fading * (1.0 - self.phi**2)
+        g0 = driving + (1.0 + self.phi**2) * self.white
+        g1 = -self.phi * self.white
+        if abs(g1) < 1e-12 * g0:
+            return self.phi, 0.0, float(np.sqrt(g0))
+        half = 0.5 * g0 / g1
+        theta = half + np.sqrt(half * half - 1.0)  # g1 < 0: the root inside the unit circle
+        return self.phi, float(theta), float(np.sqrt(g1 / theta))
+
+
+@dataclass(eq=False)
+class NoiseModel:
+    """Noise by channel, and the whitening that follows from it."""
+
+    cases: Cases
+    channels: dict[str, ChannelNoise]
+    _series: list[tuple[str, _Rows]] = field(init=False)
+    _sigma: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        series = series_of(self.cases)
+        self._series = [(channel, _evenly(rows)) for channel, rows in series]
+        self._sigma = np.ones(sum(len(rows) for _, rows in series))
+        for channel, rows in self._series:
+            self._sigma[rows] = self.channels[channel].filter[2]
+
+    @property
+    def coloured(self) -> bool:
+        """Whether any channel has memory."""
+        return any(noise.fading > 0.0 for noise in self.channels.values())
+
+    @property
+    def may_be_error(self) -> bool:
+        """Whether so much more than white noise is left beside positions that it may be an error of the model."""
+        moving = [noise.variance for channel, noise in self.channels.items() if channel not in POSITIONS]
+        return max(moving or [noise.variance for noise in self.channels.values()], default=0.0) > NEAR
+
+    def apply(self, values: FloatArray, out: FloatArray | None = None) -> FloatArray:
+        """Residuals (n_residuals, ...) or their derivatives with noise of variance 1 and no memory.
+
+        out  where they are written to, ``values`` themselves perhaps: many columns are too much to hold twice
+        """
+        freed = []
+        for channel, rows in self._series:
+            noise = self.channels[channel]
+            if noise.fading <= 0.0:
+                continue
+            phi, theta, sigma = noise.filter
+            with np.errstate(invalid="ignore", over="ignore"):
+                white = _filtered([1.0 / sigma, -phi / sigma], [1.0, theta], values[rows])
+                white[0] *= sigma / np.sqrt(noise.variance)
+            freed.append((rows, white))
+        found = np.divide(values, self._sigma.reshape(-1, *(1,) * (values.ndim - 1)), out=out)
+        for rows, white in freed:
+            found[rows] = white
+        return np.asarray(found)
+
+    def restore(self, values: FloatArray) -> FloatArray:
+        """Whitened residuals (n_residuals, ...) back in the units and with the memory they had before ``apply``."""
+        out = np.empty_like(values)
+        for channel, rows in self._series:
+            noise = self.channels[channel]
+            phi, theta, sigma = noise.filter
+            part = values[rows] * sigma
+            if noise.fading > 0.0:
+                part[0] *= np.sqrt(noise.variance) / sigma
+                part = _filtered([1.0, theta], [1.0, -phi], part)
+            out[rows] = part
+        return out
+
+
+_Rows = IntArray | slice
+
+
+def _evenly(rows: IntArray) -> _Rows:
+    """Rows as a slice where they are evenly spaced, which NumPy need not copy to look at."""
+    step = int(rows[1] - rows[0]) if len(rows) > 1 else 1
+    whole = np.array_equal(rows, rows[0] + step * np.arange(len(rows)))
+    return slice(int(rows[0]), int(rows[-1]) + 1, step) if whole and step > 0 else rows
+
+
+def _filtered(over: list[float], under: list[float], values: FloatArray) -> FloatArray:
+    from scipy.signal import lfilter  # half a second, which white noise does without
+
+    return np.asarray(lfilter(over, under, values, axis=0))
+
+
+def series_of(cases: Cases) -> list[tuple[str, IntArray]]:
+    """Residuals of each channel of each case: name of the channel and where they stand."""
+    found = []
+    for case in range(len(cases)):
+        for k, channel in enumerate(STATES):
+            rows = cases.rows[case, :, k]
+            rows = rows[rows >= 0]
+            if len(rows):
+                found.append((channel, rows))
+    return found
+
+
+def rows_of_channels(cases: Cases) -> dict[str, list[IntArray]]:
+    """Where the residuals of each channel stand, case by case."""
+    found: dict[str, list[IntArray]] = {}
+    for channel, rows in series_of(cases):
+        found.setdefault(channel, []).append(rows)
+    return found
+
+
+def white(cases: Cases) -> NoiseModel:
+    """Noise of variance 1 without memory: what residuals divided by their noise have."""
+    return NoiseModel(cases, {channel: ChannelNoise() for channel in rows_of_channels(cases)})
+
+
+def estimate(
+    cases: Cases, residuals: FloatArray, fitted: Callable[[FloatArray], FloatArray] | None = None
+) -> NoiseModel:
+    """Noise by channel, pooled over cases, from residuals (n_residuals,) that hold hardly anything but noise.
+
+    Residuals are in white noise of their channel.  The white part is what the fading part, extrapolated from lags 1, 2,
+    ..., leaves of the variance.
+
+    fitted  what fitting left of residuals (n_residuals, k): it takes away much of what fades slowly, of which a run has
+            few independent samples.  Simulated noise shows how much; None where nothing was fitted.
+    """
+    found = _autocovariances(cases, residuals[:, None])
+    counts = {channel: sum(map(len, series)) for channel, series in rows_of_channels(cases).items()}
+    model = NoiseModel(cases, {channel: _decompose(found[channel], counts[channel]) for channel in found})
+    if fitted is None or model.may_be_error:
+        return model
+    plain = np.random.default_rng(0).standard_normal((len(residuals), DRAWS))
+
+    def allowing(assumed: NoiseModel, channels: Iterable[str]) -> dict[str, ChannelNoise]:
+        """Noise of channels, with what fitting takes of the noise assumed put back."""
+        left = _autocovariances(cases, fitted(assumed.restore(plain)))
+        taken = {channel: assumed.channels[channel].autocovariance - left[channel] for channel in channels}
+        return {channel: _decompose(found[channel] + one, counts[channel]) for channel, one in taken.items()}
+
+    # What fitting leaves of white noise alternates, which hides noise that fades.
+    pure = NoiseModel(cases, {name: ChannelNoise(white=float(max(one[0], 1e-12))) for name, one in found.items()})
+    unseen = allowing(pure, [name for name, noise in model.channels.items() if noise.fading == 0.0])
+    seen = {name: noise for name, noise in unseen.items() if noise.fading > 0.0}
+    model = NoiseModel(cases, {**model.channels, **seen})
+    if model.may_be_error or not model.coloured:
+        return model
+    for _ in range(ROUNDS):
+        again = allowing(model, [name for name, noise in model.channels.items() if noise.fading > 0.0])
+        model = NoiseModel(cases, {**model.channels, **again})
+    return model
+
+
+def _autocovariances(cases: Cases, values: FloatArray) -> dict[str, FloatArray]:
+    """(LAGS + 1,) by channel, of columns (n_residuals, k) pooled."""
+    found = {}
+    for channel, series in rows_of_channels(cases).items():
+        sums = np.zeros(LAGS + 1)
+        for rows in series:
+            part = values[rows]
+            for lag in range(min(LAGS, len(part) - 1) + 1):
+                sums[lag] += float(np.sum(part[lag:] * part[: len(part) - lag]))
+        found[channel] = sums / (sum(map(len, series)) * values.shape[1])
+    return found
+
+
+def _decompose(covariance: FloatArray, n: int) -> ChannelNoise:
+    variance = float(max(covariance[0], 1e-12))
+    lagged = covariance[1:]
+    if float(np.sum(lagged)) <= NOTICED * variance * np.sqrt(LAGS / n):
+        return ChannelNoise(white=variance)
+    phi = float(np.clip(lagged[1:] @ lagged[:-1] / (lagged[:-1] @ lagged[:-1]), 0.05, SLOWEST))
+    powers = phi ** np.arange(1, LAGS + 1)
+    fading = float(np.clip(powers @ lagged / (powers @ powers), 0.0, variance))
+    return ChannelNoise(phi=phi, fading=fading, white=max(variance - fading, 1e-3 * variance))
+
+
+def by_channel(trials: Sequence[Trial], level: Callable[[FloatArray], float]) -> FloatArray:
+    """(6,) medians over trials of a level of noise, worked out from each channel of the measured motion."""
+    return np.asarray(np.median([[level(values) for values in trial.motion.T] for trial in trials], axis=0))

@@ -1,0 +1,228 @@
+"""Causes, as a diagnosis looks for them and names them: their sizes and limits, and why one is a trace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from ...displayed import Brief
+from ...documents import finite
+from ...effects import Effect, SensorEffect
+from ...phrases import small
+from ..bench.runs import IN_WORDS
+from ..signatures.intervals import Estimate
+from ..signatures.wording import parameters_in_words
+from .by_run import ByRun
+from .contributions import Contribution
+
+LONG = 40
+"""Letters of a list of parameters that fit into a line of a table."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """An effect that was found, with the sizes of its parameters; ``effect`` None for what is none.
+
+    words      what it is then: the integration step where they are empty
+    estimates  of what is the same in all runs
+    runs       what differs between them, None where nothing does
+    """
+
+    tag: str
+    effect: Effect | None
+    estimates: Mapping[str, Estimate]
+    p_value: float
+    gain_test: float | None
+    runs: ByRun | None = None
+    words: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """The cause in words."""
+        if self.effect is None and self.words:
+            return self.words
+        if self.effect is None:
+            return "The integration step of the simulation is too coarse"
+        if self.runs is not None:
+            return self.runs.sentence
+        return self.effect.sentence(parameters_in_words(self.effect, self.estimates))
+
+    @property
+    def sized(self) -> bool:
+        """Whether the interval of any of its parameters leaves out the value at which it is absent."""
+        if self.effect is None or not self.estimates:
+            return True
+        nulls = {name: self.effect.parameters[name].null for name in self._sizes}
+        return any(
+            not (-math.inf if one.low is None else one.low)
+            <= nulls[name]
+            <= (math.inf if one.high is None else one.high)
+            for name, one in self._sizes.items()
+        )
+
+    @property
+    def of_logs(self) -> bool:
+        """Whether it is an error in logs of the motion, which changes nothing that the ship does."""
+        return isinstance(self.effect, SensorEffect)
+
+    @property
+    def of_one_log(self) -> bool:
+        """Whether it is an error in the log of a single state, as the scale of a gyro is."""
+        names = [name.rpartition(".")[2] for name in self.estimates]
+        return isinstance(self.effect, SensorEffect) and len(self.effect.shown_in(names)) == 1
+
+    @property
+    def _sizes(self) -> dict[str, Estimate]:
+        """Estimates by name, but those of directions and of the form of the effect."""
+        fields = [*self.effect.parameters.items()] if self.effect else []
+        directions = {name for (_, before), (name, _) in pairwise(fields) if before.chart == "polar"}
+        named = {name for name, _ in fields} - directions - set(self.effect.form if self.effect else ())
+        known = {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
+        return {name: one for name, one in known.items() if name in named}
+
+    @property
+    def at_ends(self) -> bool:
+        """Whether all its sizes are at the ends of their ranges: another cause may be what would take them further."""
+        return self.runs is None and bool(self._sizes) and all(one.at_end for one in self._sizes.values())
+
+    @property
+    def form_at_end(self) -> list[str]:
+        """Parts of its form that are at the end of their range, in words."""
+        if self.effect is None:
+            return []
+        ended = {full.rpartition(".")[2]: one.value for full, one in self.estimates.items() if one.at_end}
+        fields = self.effect.parameters
+        return [f"{fields[name].label}, {ended[name]:.3g}" for name in self.effect.form if name in ended]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; values in the unit named, interval ends null where infinite."""
+        fields = self.effect.parameters if self.effect else {}
+        return {
+            "effect": self.tag,
+            "parameters": {
+                name: {"value": finite(e.value), "ci95": [e.low, e.high], "unit": fields[name].unit}
+                for full, e in self.estimates.items()
+                for name in [full.rpartition(".")[2]]
+            },
+            "p_value": self.p_value,
+            "gain_test": self.gain_test,
+            "by_run": self.runs.to_dict() if self.runs else None,
+            "sentence": self.sentence,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A cause that is statistically there, and without which a user would notice nothing.
+
+    alike  tags of causes that these trials do not tell it from
+    """
+
+    cause: Cause
+    contribution: Contribution
+    alike: tuple[str, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """What it is, and why it is no more than that."""
+        if self.alike:
+            told = f"too little to be told: {' or '.join((self.cause.tag, *self.alike))}, or coefficients that are off"
+            return f"There is a trace of one more, {told}. If the first: {small(self.words)}."
+        why = "it changes nothing that would be noticed"
+        if self.contribution.like_hull:
+            why = "a hull further off than believed would explain it as well"
+        elif self.contribution.harmful:
+            why = "held-out trials are told no better with it"
+        return f"There is a trace of one more, left out as {why}: {small(self.words)}."
+
+    @property
+    def words(self) -> str:
+        """The cause as a sentence without its full stop; its name where its size is not told."""
+        effect = self.cause.effect
+        if effect is None or self.cause.sized:
+            return self.cause.sentence
+        return f"{effect.title}, of a size that is not told"
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            **self.cause.to_dict(),
+            "sentence": self.words,
+            "contribution": self.contribution.to_dict(),
+            "alike": list(self.alike),
+        }
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A hypothesis that was looked at: score and refit at the first look; J on the test trials.
+
+    gain       fall of chi-squared by the refit; of one that was given up, as far as it had come
+    unvisited  what the trials would have to visit for it to be believed, "" where they do
+    by         what has a value of its own: "" for one for all, else a grouping of runs
+    """
+
+    effect: str
+    parameters: tuple[str, ...]
+    score: float
+    gain: float
+    p_value: float
+    J_test: float | None
+    unvisited: str = ""
+    by: str = ""
+
+    @property
+    def label(self) -> str:
+        """In a line, of long lists the beginning."""
+        each = f", by {IN_WORDS[self.by]}" if self.by else ""
+        names = ", ".join(self.parameters)
+        if len(names) > LONG:
+            names = f"{', '.join(self.parameters[:2])}, {len(self.parameters) - 2} more"
+        return f"{self.effect} ({names}{each})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effect": self.effect,
+            "parameters": list(self.parameters),
+            "by": self.by or None,
+            "score": self.score,
+            "gain": self.gain,
+            "p_value": self.p_value,
+            "J_test": self.J_test,
+            "unvisited": self.unvisited,
+        }
+
+
+@dataclass(frozen=True, repr=False)
+class Detectability(Brief):
+    """What these trials could tell of a hypothesis, before looking at what they do tell.
+
+    share    of its signature that re-tuning does not imitate
+    power    length of that, in deviations of the noise, for a typical size
+    limit    size from which it would be found, by parameter, in the parameter's unit
+    twins    effects its signature is closest to, with the angle between [deg]
+    """
+
+    effect: str
+    parameters: tuple[str, ...]
+    share: float
+    power: float
+    limit: dict[str, float | None]
+    units: dict[str, str]
+    twins: tuple[tuple[str, float], ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effect": self.effect,
+            "parameters": list(self.parameters),
+            "share_surviving": self.share,
+            "power": self.power,
+            "detection_limit": self.limit,
+            "units": self.units,
+            "twins": [{"effect": tag, "angle_deg": angle} for tag, angle in self.twins],
+        }

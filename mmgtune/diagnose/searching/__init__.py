@@ -1,0 +1,9 @@
+"""The search for causes: which hypotheses are refitted, how, and which is taken.
+
+search            screen, refit, decide, add, and look again; base_fit: where it begins
+shortlist         which hypotheses are refitted in a look
+refitter          one of them: from where, and how far; refitting: all of a look, the likeliest first
+refit             whether one is believed, and what rivals it
+instead           a single cause in place of re-tuning
+narrow            whether the box of the targets is in the way
+"""

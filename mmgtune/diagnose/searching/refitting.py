@@ -1,0 +1,160 @@
+"""Refits of a look: those on the shortlist, the likeliest first, and what each is worth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..bench.hypotheses import Hypothesis
+from ..bench.workbench import Point, Workbench
+from ..signatures.beside import free_with, kept_free, origin
+from ..signatures.screening import ChanceScores, Score, evidence, told_by
+from .refit import ENOUGH, Refit
+from .refitter import HOPELESS, Refitter
+from .shortlist import Shortlist, akin
+
+FAR_LESS = 1.0 / 3.0
+"""Share of the error left by the best value for all runs that values which differ between them may leave, where much is
+left."""
+
+MOST_STEPS, ALL_STEPS = 10, 30
+"""Further steps of a refit where much is left, and of the best few."""
+
+LONG_WAYS = 3
+"""Times the refit with the best predicted end is continued: along a narrow valley steps are short."""
+
+UNLIKE_SIDES = 5.0
+"""Gain that a term of a hull with unlike sides must bring in addition: on turns to one side it acts like the symmetric
+term."""
+
+WORTH_GOING_ON = 0.5
+"""Share of the best gain from which a refit is continued to its end, besides those of the best few."""
+
+FEW = 4
+"""The best few."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refitting:
+    """The refits of a look.
+
+    refitter  of single hypotheses
+    every     whether every hypothesis makes first steps, before those worth a refit are chosen
+    """
+
+    refitter: Refitter
+    every: bool = False
+
+    def best(self, ranked: Sequence[Score], *, quick: bool) -> list[Refit]:
+        """Refits of the most promising hypotheses, best first; they are kept in ``known``.
+
+        Raises Stopped where the caller stopped it.
+        """
+        refitter, shortlist = self.refitter, Shortlist(self.refitter, self.every)
+        order = sorted(ranked, key=lambda score: -score.score)
+        if not quick:
+            refitter.renew(ranked)
+        fitted = self._fitted(shortlist.for_all_runs(order, quick=quick))
+        fitted += self._fitted(shortlist.of_runs(order, [end for _, end in fitted], quick=quick))
+        fitted += self._fitted(akin(order, fitted))
+        asked = [s.hypothesis for s in ranked]
+        chance = None if quick else ChanceScores(refitter.linear, asked, refitter.bench.options.seed)
+        n_terms = max(1, sum(s.hypothesis.effect.one_of_many for s in ranked))
+        return self._ordered([self._judged(score, end, chance, n_terms) for score, end in fitted])
+
+    def _fitted(self, chosen: Sequence[Score]) -> list[tuple[Score, Point]]:
+        """Refits of hypotheses; those that promise much are carried to the end."""
+        refitter = self.refitter
+        rough = self._all_rough(chosen)
+        n = refitter.bench.problem.n_residuals
+        gains = sorted((refitter.point.chi2 - end.foreseen for end in rough), reverse=True)
+        enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
+        left = min((end.chi2 for end in rough), default=refitter.point.chi2) - n
+        ends = []
+        for score, end in zip(chosen, rough, strict=True):
+            refitter.go_on()
+            gain = refitter.point.chi2 - end.foreseen
+            far = bool(score.hypothesis.by) and refitter.strong and end.chi2 - n > HOPELESS * max(left, 0.0)
+            hopeless = far or end.foreseen > refitter.enough
+            if not hopeless and gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
+                end = refitter.on(score, end, MOST_STEPS if refitter.strong else ALL_STEPS)
+            ends.append(end)
+        best = sorted(range(len(ends)), key=lambda k: ends[k].chi2)[:FEW] if refitter.strong else []
+        for k in best:  # where little is known the others may take for ever, and are out of the question
+            if ends[k].foreseen > refitter.enough:
+                continue
+            refitter.go_on()
+            ends[k] = refitter.on(chosen[k], ends[k], ALL_STEPS)
+        for _ in range(LONG_WAYS):
+            k = min(range(len(ends)), key=lambda k: ends[k].foreseen, default=0)
+            if not ends or min(end.chi2 for end in ends) - ends[k].foreseen < ENOUGH:
+                break
+            refitter.go_on()
+            ends[k] = refitter.on(chosen[k], ends[k], ALL_STEPS)
+        refitter.known.ends.update((score.hypothesis.names, end) for score, end in zip(chosen, ends, strict=True))
+        return list(zip(chosen, ends, strict=True))
+
+    def _all_rough(self, chosen: Sequence[Score]) -> list[Point]:
+        """A few steps towards the best fit with each hypothesis, the likeliest first: others may be hopeless then."""
+        begun = [self.refitter.known.begun.get(score.hypothesis.names, ()) for score in chosen]
+        likely = np.argsort([min((end.chi2 for end in ends), default=np.inf) for ends in begun], kind="stable")
+        found: dict[int, Point] = {}
+        for k in likely.tolist():
+            self.refitter.go_on()
+            found[k] = self.refitter.rough(chosen[k])
+        return [found[k] for k in range(len(chosen))]
+
+    def _ordered(self, refits: Sequence[Refit]) -> list[Refit]:
+        """The best first: one value for all before values that differ between runs, unless these explain far more."""
+        found = sorted(refits, key=lambda refit: refit.cost - refit.gain)
+        alike = next((refit for refit in found if not refit.hypothesis.by), None)
+        if alike is None or not found[0].hypothesis.by:
+            return found
+        n = self.refitter.bench.problem.n_residuals
+        noise = n if alike.point.chi2 >= n else found[0].point.chi2  # beneath n, noise was known as too large
+        left = [max(refit.point.chi2 - noise, math.sqrt(2.0 * n)) for refit in (found[0], alike)]
+        inflation = max(found[0].score.inflation, alike.score.inflation)
+        better = (found[0].gain - alike.gain) / inflation - found[0].cost + alike.cost
+        none = alike.evidence < ENOUGH
+        if (better >= ENOUGH or none) and (not self.refitter.strong or left[0] <= FAR_LESS * left[1]):
+            return found
+        return [alike, *(refit for refit in found if refit is not alike)]
+
+    def _judged(self, score: Score, end: Point, chance: ChanceScores | None, n_terms: int) -> Refit:
+        """A refit with its gain, cost, evidence and p-value; ``n_terms`` is how many terms there are to choose from."""
+        refitter, hypothesis = self.refitter, score.hypothesis
+        bench, point = refitter.bench, refitter.point
+        null = bench.null(hypothesis.names)
+        # A wind of nearly nothing is not quite nothing, and numbers may run away: the null itself is always open.
+        if not end.chi2 <= point.chi2:
+            kept = kept_free(point, hypothesis)
+            unit = np.concatenate([point.unit[kept], origin(bench, point, hypothesis.names)])
+            end = Point(free_with(point, hypothesis), unit, point.offsets, point.chi2, point.integrator, end.spreads)
+        gain = point.chi2 - end.chi2
+        volume = told_by(refitter.linear, hypothesis, refitter.moved(hypothesis, end))[1] if hypothesis.by else 0.0
+        k = refitter.n_new(hypothesis)
+        cost = k * bench.price + (2.0 * np.log(n_terms) if hypothesis.effect.one_of_many else 0.0)
+        cost += volume + (UNLIKE_SIDES if hypothesis.lopsided else 0.0)
+        return Refit(
+            hypothesis,
+            score,
+            end,
+            gain,
+            cost,
+            gain / score.inflation - cost,
+            float(np.max(np.abs(end.unit[-len(null) :] - null) / refitter.typical(hypothesis))),
+            chance.p_value(evidence(max(gain / score.inflation - volume, 0.0), k)) if chance else 1.0,
+            _unvisited(bench, end, hypothesis),
+        )
+
+
+def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
+    """What the trials would have to visit for a fitted hypothesis to be believed; "" where they do."""
+    if hypothesis.effect.unvisited is None:
+        return ""
+    values = bench.values(end)
+    found = {name.rpartition(".")[2]: values[name] for name in hypothesis.names}
+    return hypothesis.effect.unvisited(found, bench.visited)

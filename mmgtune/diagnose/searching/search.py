@@ -1,0 +1,491 @@
+"""The search for causes: screen, refit, decide, add, and look again.
+
+A hypothesis is believed only where all of this holds: refitted together with the targets it explains far more than
+chance would bring anywhere in the search, its size is worth speaking of, and no other hypothesis does nearly as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...backends import Integrator
+from ...fitting.box import base_of
+from ...fitting.lost import hold_simulated
+from ...hooks import Phase
+from ...trial import Held
+from ..bench import noise as noises
+from ..bench.hypotheses import Hypothesis
+from ..bench.workbench import Point, Workbench
+from ..signatures.beside import free_with, kept_free
+from ..signatures.linear import Linear, linearise
+from ..signatures.screening import Score, scores
+from .base_fit import PRECISE, base_fit, unnoticed
+from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
+from .refitter import STRONG, Given, Known, Refitter, Stopped, hopeless_beside
+from .refitting import Refitting
+
+ALMOST = 0.9
+"""Share of the best gain from which a finer integration step, which has no parameter, is believed before any effect."""
+
+HALF = 0.5
+"""Share of the best gain from which a log that looks held is read accordingly: it is seen in the log, and a late clock
+explains most of it too."""
+
+TOO_MANY = 4
+"""Terms of a sum of causes from which it is not believed."""
+
+AS_WELL = 0.02
+"""Share by which the gains of two effects differ at most that do as well as each other at the first look."""
+
+ALIKE, HARDLY = 0.0005, 0.05
+"""Share of the fall of chi-squared, and chi-squared per residual, that one value for all may leave beside values of
+each run to be taken for them: a current that is the same within a hundredth belongs in the profile."""
+
+FINER = 4
+"""The integration step as a cause: a Runge-Kutta step this many times finer."""
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One look at what is left.
+
+    base     the point with the causes accepted before
+    refits   best first
+    scores   of every hypothesis
+    rivals   of the best: hypotheses of other effects that do nearly as well
+    accepted whether the best is believed
+    reason   why not, where it is not
+    finer    fall of chi-squared by a finer integration step, None where not tried
+    evenly   fall of chi-squared by inputs that change evenly between the updates of a log that looks held
+    """
+
+    base: Point
+    linear: Linear
+    scores: list[Score]
+    refits: list[Refit]
+    rivals: list[Refit]
+    accepted: bool
+    reason: str
+    finer: float | None = None
+    evenly: float | None = None
+
+    def settled_by(self, fall: float | None, share: float) -> bool:
+        """Whether a fall of chi-squared by what has no parameter is believed before any effect, from a share of the
+        best of these."""
+        best = self.refits[0].gain if self.refits else 0.0
+        return fall is not None and fall > max(2.0 * ENOUGH, share * best)
+
+
+@dataclass(eq=False)
+class Found:
+    """The outcome of a search.
+
+    base    the model re-tuned without any cause
+    final   the model with all accepted causes
+    causes  accepted hypotheses, in the order found, after those that others made superfluous were dropped
+    steps   every look, the last one in vain
+    held    what the logs hold between updates, where that is a cause; the base is read accordingly too
+    more    whether much is left beside as many causes as are believed together, so that no further one was looked for
+    left_out  refits of another search of an effect that was not looked for in this one
+    """
+
+    base: Point
+    final: Point
+    causes: list[Hypothesis] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
+    finer_step: float | None = None
+    held: Held | None = None
+    more: bool = False
+    left_out: list[Refit] = field(default_factory=list)
+
+
+def search(
+    bench: Workbench,
+    hypotheses: Sequence[Hypothesis],
+    in_place: Sequence[Hypothesis] = (),
+    say: Callable[[str], None] = lambda _: None,
+) -> Found:
+    """Forward search with a backward look after each addition; where it is stopped, what was accepted by then.
+
+    in_place  hypotheses that do the same as targets; looked at where these end at a bound of their box
+    """
+    say("re-tuning the model without any cause")
+    base = base_fit(bench)
+    if not np.isfinite(base.chi2):
+        problem = bench.problem_of(base.names).with_offsets(base.offsets)
+        hold_simulated(bench.model.profile, problem, base.unit, bench.trials)
+    at_end = {name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0}
+    hypotheses = [*hypotheses, *(one for one in in_place if set(one.instead) <= at_end)]
+    found = Found(base, base)
+    left = list(hypotheses)
+    dropped: list[Hypothesis] = []
+    once: list[Hypothesis] = []
+    while not bench.stop():
+        found.more = len(found.causes) == TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
+        if found.more:
+            break
+        number = len(found.causes) + 1
+        say(Phase("looking for a cause" if number == 1 else f"looking for cause {number}", look=number))
+        try:
+            step = look(bench, found.final, left, first=not found.steps)
+        except Stopped:
+            break
+        found.steps.append(step)
+        if step.settled_by(step.evenly, HALF):
+            say("the log holds its values")
+            found.held = bench.held
+            bench.read_evenly()
+            found.final = bench.refit(step.base.names, step.base.unit[:, None], step.base.offsets)
+            _drop_superfluous(bench, found, found.causes)  # what was taken for it
+            left = _left(hypotheses, found, dropped)
+            continue
+        if step.settled_by(step.finer, ALMOST):
+            say("the integration step is a cause")
+            found.finer_step = step.finer
+            bench.integrate(finer(bench.problem.integrator))
+            found.final = bench.refit(step.base.names, step.base.unit[:, None], step.base.offsets)
+            continue
+        if not step.accepted:
+            found.final = step.base
+            break
+        best = step.refits[0]
+        found.causes = [*(cause for cause in found.causes if not best.hypothesis.holds(cause)), best.hypothesis]
+        found.final = best.point
+        bench.spreads = dict(best.point.spreads)
+        known = list(found.causes)
+        _drop_superfluous(bench, found, [cause for cause in known[:-1] if cause.by])  # these bend to much
+        dropped += [cause for cause in known if cause not in found.causes]
+        bent = [cause for cause in found.causes[:-1] if cause.by and cause not in once]
+        _make_alike(bench, found, bent)
+        once += bent
+        left = _left(hypotheses, found, dropped)
+        if len(found.causes) >= bench.options.most:
+            break
+    if found.steps:
+        first = found.steps[0].base
+        tolerance = unnoticed(bench, first.chi2)
+        found.base = bench.refit(first.names, first.unit[:, None], first.offsets, tolerance=tolerance)
+        found.final = bench.refit(found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE)
+    if len(found.causes) > 1 and not bench.stop():
+        _drop_superfluous(bench, found, found.causes[:-1])
+    if not bench.stop():
+        _make_plain(bench, found, hypotheses)
+    found.more = found.more and len(found.causes) == TOO_MANY - 1
+    return found
+
+
+def doubtful_beginning(bench: Workbench, found: Found) -> list[Refit]:
+    """Refits of the first cause where another may have been the one to begin with; none else.
+
+    That is so where a part of its form ended at the end of its range, so that its force is that of others together,
+    where another effect did as well at the first look, be what was begun with a cause still or not, and where a cause
+    that acts much like it was found beside it: the two may push against each other in the place of the second alone.
+    """
+    looks = [step.refits for step in found.steps if step.accepted and step.refits]
+    read_otherwise = found.held is not None or found.finer_step is not None  # since the first look
+    if read_otherwise or not (found.causes and looks):
+        return []
+    first, unit = found.causes[0], dict(zip(found.final.names, found.final.unit, strict=True))
+    best, *others = looks[0]
+    tag = ""
+    at_end = any(not 0.0 < unit.get(name, 0.5) < 1.0 for name in bench.believed.form_of(first.effect))
+    if at_end or against_its_kin(found):
+        tag = first.tag
+    elif any(one.hypothesis.tag != best.hypothesis.tag and abs(one.gain / best.gain - 1.0) < AS_WELL for one in others):
+        tag = best.hypothesis.tag
+    return [one for refits in looks for one in refits if one.hypothesis.tag == tag]
+
+
+def against_its_kin(found: Found) -> bool:
+    """Whether a cause was found that acts much like the first."""
+    return any(cause.tag in first.effect.akin for first in found.causes[:1] for cause in found.causes[1:])
+
+
+def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
+    """Whether a hypothesis may be looked at where a cause is known: it is of something else, or says more of it."""
+    return hypothesis.holds(cause) or not set(hypothesis.bases) & set(cause.bases)
+
+
+def _left(hypotheses: Sequence[Hypothesis], found: Found, dropped: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Hypotheses that may still be looked at beside the causes found."""
+    return [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
+
+
+def finer(integrator: Integrator) -> Integrator:
+    """A Runge-Kutta step that is fine enough for any ship."""
+    return Integrator("rk4", FINER * integrator.substeps)
+
+
+def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool) -> Step:
+    """Scores of all hypotheses at a point, refits of the best, and whether the best of those is to be believed.
+
+    Noise is estimated again from what the best refit and all other signatures together leave: with fewer of them a
+    cause would pass for noise with a memory.
+    """
+    names = [name for h in hypotheses for name in h.bases]
+    varying = [name for h in hypotheses if h.by for name in h.bases]
+    linear = linearise(bench, point, names, varying=varying)
+    ranked = scores(linear, hypotheses)
+    known = Known()
+    best = Refitting(Refitter(bench, point, linear, known)).best(ranked, quick=True)
+    richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
+    at_best = linear if richest is point else linearise(bench, richest, names)
+    noise = _noise_at(bench, at_best)
+    if _differs(bench.noise, noise):
+        bench.know(noise)
+        left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0).chi2
+        tolerance = unnoticed(bench, left)
+        point = bench.refit(point.names, point.unit[:, None], point.offsets, tolerance=tolerance)
+        linear = linearise(bench, point, names, varying=varying)
+        ranked = scores(linear, hypotheses)
+        known.outdate()
+    given = _as_given(bench, point, hypotheses)
+    fitted = Refitting(Refitter(bench, point, linear, known, given)).best(ranked, quick=False)
+    seen = _with_inputs_seen(linear, fitted)
+    if seen is not linear:  # with less left open more may be told, and other refits be worth their while
+        linear, ranked = seen, scores(seen, hypotheses)
+        fitted = Refitting(Refitter(bench, point, linear, known, given)).best(ranked, quick=False)
+    refits = believable_first(fitted, bench.options.level)
+    if refits and refits[0] is not fitted[0] and fitted[0].by_chance(bench.options.level):
+        told = _in_a_form_told(refits, fitted[0], bench.options.level)
+        refits = refits if told or _stands_beside(bench, refits[0], fitted[0]) else fitted
+    finer_gain = None
+    if first:
+        tolerance = unnoticed(bench, point.chi2)
+        by = finer(point.integrator)
+        other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=by, tolerance=tolerance)
+        finer_gain = point.chi2 - other.chi2
+    evenly = None
+    if bench.held and bench.updates is None:
+        read = replace(bench)
+        read.read_evenly()
+        evenly = point.chi2 - read.refit(point.names, point.unit[:, None], point.offsets).chi2
+    rivals = rivals_among(refits) if refits else []
+    accepted, reason = decide(bench, refits, rivals)
+    return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
+
+
+def _with_inputs_seen(linear: Linear, fitted: Sequence[Refit]) -> Linear:
+    """The linear problem of a look with no more left open by the inputs than the best refit shows."""
+    if not fitted or fitted[0].gain < 2.0 * ENOUGH:
+        return linear
+    best = fitted[0].hypothesis
+    explained = linear.columns_of(best.bases, best.groups) if best.by else linear.columns(linear.absent(best.names))
+    return linear.with_inputs_seen(fitted[0].point.chi2, explained)
+
+
+def _in_a_form_told(refits: Sequence[Refit], more: Refit, level: float) -> bool:
+    """Whether what explains more, though by chance perhaps, is another form of the best that is believed, or of what
+    does nearly as well: two rates of a rudder where one is told."""
+    forms = [one for one in refits if one.hypothesis.effect is more.hypothesis.effect and not one.by_chance(level)]
+    return any(one is refits[0] or not refits[0].beats(one) for one in forms)
+
+
+def _stands_beside(bench: Workbench, one: Refit, more: Refit) -> bool:
+    """Whether a cause is needed beside what explains more, though by chance perhaps: else it may be a part of that."""
+    both = _with(bench, more.point, one)
+    return (more.point.chi2 - both.chi2) / one.score.inflation - one.cost >= ENOUGH
+
+
+def _with(bench: Workbench, point: Point, other: Refit, hopeless: float = math.inf) -> Point:
+    """A point refitted with the hypothesis of a refit besides, from where that ended."""
+    own = other.point.unit[-len(other.hypothesis.names) :]
+    return bench.refit(
+        free_with(point, other.hypothesis),
+        np.concatenate([point.unit[kept_free(point, other.hypothesis)], own])[:, None],
+        point.offsets,
+        spreads={**point.spreads, **other.point.spreads},
+        hopeless=hopeless,
+    )
+
+
+def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) -> Given | None:
+    """The point refitted with what has leeway at the profile's values, where that leaves much and no run is lost."""
+    kept = [i for i, name in enumerate(point.names) if name not in bench.believed.leeway]
+    if len(kept) == len(point.names):
+        return None
+    names, start = [point.names[i] for i in kept], point.unit[kept][:, None]
+    there = bench.refit(
+        names,
+        start,
+        point.offsets,
+        integrator=point.integrator,
+        tolerance=unnoticed(bench, point.chi2),
+        spreads=point.spreads,
+    )
+    if not STRONG * bench.problem.n_residuals <= there.chi2 < math.inf:
+        return None
+    alike = [h for h in hypotheses if not h.by]
+    linear = linearise(bench, there, [name for h in alike for name in h.bases])
+    ranked = scores(linear, alike)
+    ranked.sort(key=lambda score: -score.score)
+    return Given(there, linear, {score.hypothesis.names: score.step for score in ranked})
+
+
+def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
+    """Noise from the residual less all signatures, in the units residuals had before any whitening."""
+
+    def fitted(residuals: FloatArray) -> FloatArray:
+        return bench.noise.restore(linear.fitted(bench.noise.apply(residuals))[linear.measured])
+
+    return noises.estimate(bench.problem.cases, bench.noise.restore(linear.noise[linear.measured]), fitted)
+
+
+def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
+    """Whether two noise models give noticeably different weights."""
+    for channel, one in a.channels.items():
+        other = b.channels[channel]
+        if abs(np.log(one.filter[2] / other.filter[2])) > 0.02 or abs(one.phi - other.phi) > 0.05:
+            return True
+    return False
+
+
+def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
+    """The point refitted without one of its hypotheses."""
+    back = [name for name in hypothesis.instead if name in bench.targets and name not in point.names]
+    return _exchanged(bench, point, hypothesis.names, back, bench.null(back))
+
+
+def _exchanged(
+    bench: Workbench,
+    point: Point,
+    gone: Sequence[str],
+    names: Sequence[str] = (),
+    unit: Sequence[float] | FloatArray = (),
+) -> Point:
+    """The point refitted without some of its names, and with others from ``unit`` on."""
+    kept = [i for i, name in enumerate(point.names) if name not in gone]
+    start = np.concatenate([point.unit[kept], unit])
+    free = (*(point.names[i] for i in kept), *names)
+    return bench.refit(free, start[:, None], point.offsets, spreads=point.spreads)
+
+
+def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
+    """Drop causes of those asked for that others explain."""
+    for hypothesis in list(asked):
+        fewer = without(bench, found.final, hypothesis)
+        if fewer.chi2 - found.final.chi2 < price_of(bench, found, hypothesis) + ENOUGH:
+            found.causes.remove(hypothesis)
+            found.final = fewer
+
+
+def _make_alike(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
+    """Make values of each run one for all where that leaves little more than noise beside what was found since.
+
+    The next look asks again whether they differ.
+    """
+    for cause in asked:
+        one = replace(cause, by="", groups=())
+        alike = _as_special(bench, found.final, cause, one)
+        if alike.chi2 < STRONG * bench.problem.n_residuals:
+            found.causes[found.causes.index(cause)] = one
+            found.final = alike
+
+
+def _as_special(bench: Workbench, point: Point, cause: Hypothesis, special: Hypothesis) -> Point:
+    """The point refitted with a special case in the place of a cause; one value for all begins at the mean of those of
+    each run."""
+    gone = [name for name in cause.names if name not in special.names]
+    if special.by == cause.by:
+        return _exchanged(bench, point, gone)
+    values = dict(zip(point.names, point.unit, strict=True))
+    mean = [float(np.mean([values[name] for name in cause.names if base_of(name) == base])) for base in special.names]
+    return _exchanged(bench, point, gone, special.names, mean)
+
+
+def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]) -> None:
+    """Put a special case in the place of a cause where the parameters it does without earn too little: what else was
+    wrong when the cause was found may have bent them, or made them differ from run to run.  Or another form of the same
+    effect that has fewer: one rate of the rudder for two that are alike."""
+    for cause in list(found.causes):
+        if (plainer := _in_plainer_form(bench, found, cause, hypotheses)) is not None:
+            found.causes[found.causes.index(cause)], found.final = plainer
+            continue
+        special = [one for one in hypotheses if one.by in (cause.by, "") and cause.holds(one)]
+        for one in sorted(special, key=lambda one: len(one.names)):
+            fewer = _as_special(bench, found.final, cause, one)
+            saved = (len(cause.names) - len(one.names)) * bench.price
+            if one.by != cause.by:
+                saved = price_of(bench, found, cause) - len(one.names) * bench.price
+            rise, fall = fewer.chi2 - found.final.chi2, found.base.chi2 - found.final.chi2
+            hardly = rise < min(ALIKE * fall, HARDLY * bench.problem.n_residuals)
+            if rise < saved + ENOUGH or (one.by != cause.by and hardly):
+                found.causes[found.causes.index(cause)] = one
+                found.final = fewer
+                break
+
+
+def _in_plainer_form(
+    bench: Workbench, found: Found, cause: Hypothesis, hypotheses: Sequence[Hypothesis]
+) -> tuple[Hypothesis, Point] | None:
+    """A form of the effect of a cause with fewer parameters, none of them among its own, that does nearly as well."""
+    step = step_of(found, cause)
+    forms = [one for one in hypotheses if one.effect is cause.effect and one.by == cause.by]
+    plainer = [one for one in forms if len(one.names) < len(cause.names) and not set(one.names) & set(cause.names)]
+    if step is None or not plainer:
+        return None
+    refits = {refit.hypothesis.names: refit for refit in step.refits}
+    values = dict(zip(found.final.names, found.final.unit, strict=True))
+    mean = float(np.mean([values[name] for name in cause.names]))
+    fewer = without(bench, found.final, cause)
+    for one in sorted(plainer, key=lambda one: len(one.names)):
+        refit = refits.get(one.names)
+        start = np.full(len(one.names), mean)  # where it was not looked at: one rate of the rudder for two
+        other = _with(bench, fewer, refit) if refit else _exchanged(bench, fewer, (), one.names, start)
+        saved = (len(cause.names) - len(one.names)) * bench.price
+        inflation = (refit or step.refits[0]).score.inflation
+        if (other.chi2 - found.final.chi2) / inflation < saved + ENOUGH:
+            return one, other
+    return None
+
+
+def step_of(found: Found, cause: Hypothesis) -> Step | None:
+    """The look in which a cause was found, or what it is a special case of."""
+    steps = [step for step in found.steps if step.refits]
+    as_it_is = [step for step in steps if step.refits[0].hypothesis == cause]
+    of_more = [step for step in steps if step.refits[0].hypothesis.holds(cause)]
+    return next(iter([*as_it_is, *of_more]), None)
+
+
+def price_of(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
+    """What a cause must explain at least: its share by BIC, or what it was charged when it was found."""
+    paid = [r.cost for step in found.steps for r in step.refits[:1] if r.hypothesis == hypothesis and hypothesis.by]
+    return paid[0] if paid else len(hypothesis.names) * bench.price
+
+
+def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
+    """Other hypotheses that would do nearly as well in the place of a cause, all others in place: of those that were
+    near when it was found, or another form of the same effect whose place it took."""
+    step = step_of(found, cause)
+    if step is None:
+        return []
+    others = [one for one in found.steps if one is not step and one.accepted and _is_of(one, cause)]
+    if len(found.causes) == 1 and not others and not found.left_out:
+        return rivals_among(step.refits)
+    near = [*(rival for one in (step, *others) for rival in _near(one, cause)), *found.left_out]
+    fewer = without(bench, found.final, cause)
+    best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
+    rivals: dict[str, Refit] = {}
+    for rival in near:
+        if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
+            continue
+        other = _with(bench, fewer, rival, hopeless_beside(bench, found.final.chi2))
+        rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
+        if not best.beats(rival):
+            rivals.setdefault(rival.hypothesis.tag, rival)
+    return list(rivals.values())
+
+
+def _is_of(step: Step, cause: Hypothesis) -> bool:
+    """Whether what was found in a look is of the effect of a cause, in whatever form."""
+    return bool(step.refits) and step.refits[0].hypothesis.tag == cause.tag
+
+
+def _near(step: Step, cause: Hypothesis) -> list[Refit]:
+    """Refits of a look that came near to the best, and are of another effect than a cause."""
+    return [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]

@@ -1,0 +1,263 @@
+"""What is odd about the measured motion: gaps, jumps, spikes, channels that contradict each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from ...arrays import BoolArray, FloatArray, runs_of_true
+from ...inputs import INPUTS
+from ...phrases import aboard, counted
+from ...units import DEG
+from ..kinematics import FITS, Reading, lever_of, position_misfits, turning
+from ..model import Trial
+from ..schema import LARGEST_YAW_RATE, MOTION
+from .finding import Finding
+
+REPEATED = 0.05
+"""Share of samples that repeat the one before, and that do not, from which a channel is taken for one of few digits."""
+
+SMALL = 0.02
+"""Share of the level of a channel up to which the step of its last digit may be that of an instrument."""
+
+USUAL = (
+    "give velocities over ground (not through the water), in ship axes, in m/s, and both velocities and positions at "
+    "midship, not at an antenna or at the centre of gravity"
+)
+"""What to do where no one reading of velocities and positions makes them agree."""
+
+MENDED = {
+    Reading.IN_EARTH_AXES: "turn 'u' and 'v' into ship axes: u cos(psi) + v sin(psi) and v cos(psi) - u sin(psi)",
+    Reading.TO_PORT: "change the sign of 'v': positive to starboard",
+    Reading.SWAPPED: "swap 'x' and 'y': x is north and y is east",
+    Reading.IN_KNOTS: "multiply 'u' and 'v' by 0.5144: they are to be in m/s",
+    Reading.NOT_KNOTS: "divide 'u' and 'v' by 0.5144: they are in m/s without it",
+    Reading.TO_WEST: "change the sign of 'y': positive east",
+    Reading.TWICE: "multiply 'psi' by 180/pi: it is in radians then",
+}
+"""What makes of a reading that fits the one that is asked for."""
+
+OF_MIDSHIP = "give positions of midship: [antenna] of the map says where they were measured"
+
+WANDER = 4
+"""Windows so many times longer are looked at where no reading fits: positions that wander miss by less in them."""
+
+TURNED, FEWEST_MOVING = 0.3, 8
+"""Angle [rad] that the heading turns by at least in a trial whose speeds cannot stand still, and samples of it."""
+
+FREER = 2.0
+"""What the misfit counts of a reading that has two numbers to choose, among those that have none."""
+
+
+def motion_findings(trial: Trial, where: str) -> list[Finding]:
+    """Findings on the motion channels of a trial that can be used."""
+    return [
+        *_gaps(trial, where),
+        *_jumps(trial, where),
+        *_spikes(trial, where),
+        *_yaw(trial, where),
+        *_positions(trial, where),
+    ]
+
+
+def sway_findings(trial: Trial, where: str) -> list[Finding]:
+    """A sway that is the same throughout, in a ship that turns and whose other speeds change: a column filled in."""
+    psi, u, v = (values[np.isfinite(values)] for values in (trial.psi, trial.u, trial.v_m))
+    if min(len(psi), len(u), len(v)) < FEWEST_MOVING or np.ptp(psi) < TURNED or np.ptp(u) == 0.0 or np.ptp(v) > 0.0:
+        return []
+    return [
+        Finding(
+            "warning",
+            f"'v' is {v[0]:.4g} throughout",
+            f"{where}, column 'v'",
+            "a ship that turns drifts: it was filled in, not measured, and 'u' may be the speed over ground",
+            "leave the column out, or mark it as NaN: it counts in no comparison then",
+            "constant",
+        )
+    ]
+
+
+def _gaps(trial: Trial, where: str) -> list[Finding]:
+    """One finding for all columns: sensors that fail together would fill pages."""
+    missing = {name: np.isnan(values) for name, values in trial.columns.items() if name in MOTION}
+    missing = {name: rows for name, rows in missing.items() if rows.any()}
+    if not missing:
+        return []
+    longest = {name: longest_run(rows) for name, rows in missing.items()}
+    worst = max(longest, key=lambda name: longest[name][1] - longest[name][0])
+    begins, ends = longest[worst]
+    # A gap lasts from the last sample before it to the first one after it, if there is one.
+    lasts = trial.t[min(ends, trial.n_samples - 1)] - trial.t[begins - 1]
+    counts = sorted({int(rows.sum()) for rows in missing.values()})
+    many = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+    *names, last = (f"'{name}'" for name in missing)
+    told = f"{', '.join(names)} and {last} have gaps" if names else f"{last} has gaps"
+    length = counted(ends - begins, "sample")
+    return [
+        Finding(
+            "warning",
+            f"{told}: {many} of {trial.n_samples} samples; the longest has {length}, {lasts:.3g} s",
+            f"{where}, column '{worst}', row {begins}",
+            "samples in gaps count in no comparison",
+            code="gaps",
+        )
+    ]
+
+
+def longest_run(rows: BoolArray) -> tuple[int, int]:
+    """First row of the longest run of rows (n_samples,) that are so, and the row behind it."""
+    return max(runs_of_true(rows), key=lambda run: run[1] - run[0])
+
+
+NOT_UNWRAPPED = {
+    "why": "it is not unwrapped; a jump would count as a miss of 360 deg",
+    "fix": "apply numpy.unwrap to 'psi'",
+}
+"""What is said of a heading with full turns in it."""
+
+
+def full_turns(psi: FloatArray) -> BoolArray:
+    """(n_samples - 1,) where a heading [rad] jumps by a full turn from one sample to the next."""
+    return np.asarray(np.abs(np.abs(np.diff(psi)) - 2.0 * np.pi) < 1.0)
+
+
+def _jumps(trial: Trial, where: str) -> list[Finding]:
+    """Heading that is not unwrapped; a gap hides how far the ship turned in it, so jumps across gaps do not count."""
+    jumps = full_turns(trial.psi)
+    if not jumps.any():
+        return []
+    row = int(np.flatnonzero(jumps)[0]) + 1
+    return [
+        Finding(
+            "warning",
+            f"the heading jumps by a full turn {jumps.sum()} times",
+            f"{where}, column 'psi', row {row}",
+            **NOT_UNWRAPPED,
+        )
+    ]
+
+
+def _spikes(trial: Trial, where: str) -> list[Finding]:
+    found = []
+    for name, values in trial.columns.items():
+        if name not in MOTION and name not in INPUTS:
+            continue
+        rows = spikes(values, share=0.02 if name in MOTION else 0.2)
+        if len(rows):
+            found.append(
+                Finding(
+                    "warning",
+                    f"'{name}' has {counted(len(rows), 'spike')}",
+                    f"{where}, column '{name}', row {rows[0]}",
+                    "single samples far off their neighbours",
+                    "mark them as NaN" if name in MOTION else "replace them by interpolation",
+                )
+            )
+    return found
+
+
+def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
+    """Rows of single samples that continue neither what comes before nor what comes after.
+
+    A spike is off both by ten times the usual and by ``share`` of the channel's range; a step or a corner fits one
+    side.  Where few digits are logged a step of the last of them is none.  The first and last two rows cannot be told.
+    """
+    if len(values) < 10 or np.isfinite(values).sum() < 10:
+        return np.zeros(0, dtype=np.intp)
+    here = values[2:-2]
+    before, after = 2.0 * values[1:-3] - values[:-4], 2.0 * values[3:-1] - values[4:]
+    off = np.minimum(np.abs(here - before), np.abs(here - after))
+    if not np.isfinite(off).any():
+        return np.zeros(0, dtype=np.intp)
+    low, high = np.nanpercentile(values, [1.0, 99.0])
+    least = max(14.8 * np.nanmedian(off), share * (high - low), 0.02 * (np.nanmax(values) - np.nanmin(values)))
+    # A sample between its neighbours is on the way from one to the other, however fast.
+    beyond = (here - values[1:-3]) * (here - values[3:-1]) > 0.0
+    apart = np.minimum(np.abs(here - values[1:-3]), np.abs(here - values[3:-1]))
+    return np.flatnonzero((off > least) & beyond & (apart > 3.0 * _digit(values))) + 2
+
+
+def _digit(values: FloatArray) -> float:
+    """The usual step of a channel that often repeats its value, because few digits are logged; 0 for any other.
+
+    Of one that hardly ever moves, as revolutions logged in halves, it is what all values are whole multiples of.
+    """
+    known = values[np.isfinite(values)]
+    steps = np.abs(np.diff(known))
+    moving = steps[steps > 0.0]
+    few = REPEATED * len(steps) < len(moving) < (1.0 - REPEATED) * len(steps)  # one that rests but for spikes is none
+    return float(np.median(moving)) if few else _quantum(known)
+
+
+def _quantum(known: FloatArray) -> float:
+    """The step that all values (n,) are whole multiples of, where it is small beside them; else 0."""
+    found = np.unique(known)
+    level = float(np.median(np.abs(known)))
+    step = float(np.min(np.diff(found), initial=np.inf))
+    # The same number worked out in two ways, and a spike that happens to be a multiple: 0 among revolutions.
+    if not 1e-6 * level < step < SMALL * level:
+        return 0.0
+    of = known / step
+    return step if np.max(np.abs(of - np.round(of))) < 0.01 else 0.0
+
+
+def _yaw(trial: Trial, where: str) -> list[Finding]:
+    turned = turning(trial.columns)
+    place = f"{where}, columns 'psi' and 'r'"
+    if turned.span > 0.3 and turned.miss > 0.1 * turned.span + 0.1:
+        return [
+            Finding(
+                "warning",
+                "the yaw rate does not integrate to the heading",
+                place,
+                f"they come apart by {turned.miss / DEG:.3g} deg; the heading turns {turned.ratio:.3g} times as far, "
+                f"correlation {turned.correlation:.2f}",
+                "check sign, scale and bias of 'r' against 'psi'",
+                "yaw-rate",
+            )
+        ]
+    yaw = np.abs(trial.r[np.isfinite(trial.r)])
+    misfits = position_misfits(trial.columns)
+    if np.percentile(yaw, 95.0) > LARGEST_YAW_RATE and misfits.get(Reading.AS_ASKED, 1.0) > FITS:
+        return [
+            Finding(
+                "warning",
+                f"yaw rate up to {yaw.max():.3g} rad/s",
+                place,
+                "only models shorter than a few metres turn so fast; heading and yaw rate may both be in degrees",
+                "check the units of 'psi' and 'r'",
+            )
+        ]
+    return []
+
+
+def _positions(trial: Trial, where: str) -> list[Finding]:
+    misfits = position_misfits(trial.columns)
+    asked = misfits.pop(Reading.AS_ASKED, 0.0)
+    if asked <= FITS:
+        return []
+    # Small angles in degrees read as earth axes do; headings surely in degrees make a trial unusable.
+    del misfits[Reading.IN_DEGREES]
+    enough = min(FITS, 0.5 * asked)
+    fitting = [(miss, f"if read {one.words}", MENDED[one]) for one, miss in misfits.items() if miss < enough]
+    lever = lever_of(trial.columns)
+    if lever is not None and lever.likely and FREER * lever.misfit < enough:
+        place = f"if they are of a point about {aboard(lever.x, lever.y, 2)} of midship"
+        fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
+    fitting.sort()
+    if not fitting and position_misfits(trial.columns, WANDER).get(Reading.AS_ASKED, 0.0) <= FITS:
+        return []
+    fits = "they fit " + ", or ".join(words for _, words, _ in fitting)
+    fix = "; or ".join(fix for _, _, fix in fitting)
+    if not fitting:
+        fits, fix = f"nor do they fit if read in earth axes ({100 * misfits[Reading.IN_EARTH_AXES]:.0f} %)", USUAL
+    return [
+        Finding(
+            "warning",
+            "u, v and heading do not integrate to the positions",
+            f"{where}, columns 'x', 'y', 'psi', 'u' and 'v'",
+            f"read in ship axes they miss by {100 * asked:.0f} % of the distance; {fits}",
+            fix,
+            "contradicted",
+        )
+    ]

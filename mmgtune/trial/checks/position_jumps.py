@@ -1,0 +1,126 @@
+"""Steps of the logged position that the logged velocities do not make, as a satellite receiver has them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...arrays import FloatArray, runs_of_true
+from ...physics.frame import to_earth
+from ..gaps import bridged
+from ..kinematics import halfway, middle
+from ..model import Trial
+from .finding import Finding
+from .motion_checks import spikes
+
+SPAN = 8.0
+"""Time [s] on each side of a step over which the track has to lie on one line and then on another."""
+FEWEST, MOST = 5, 100
+"""Samples of such a line."""
+BEYOND = 12.0
+"""How many times the usual misfit of two neighbouring lines a step exceeds."""
+WAY = 1.0
+"""Way [s] at the ship's speed that a step exceeds: what is smaller hardly matters."""
+
+
+def position_jumps(trial: Trial) -> list[tuple[int, float]]:
+    """Rows after a step of the position, and by how far [m] it goes.
+
+    The way the velocities make is taken off the track; lines fitted to what is left before and after each moment must
+    meet there.  Drifts, currents and biases of the velocities are lines themselves and pass.  Where a few velocities
+    are missing the way goes on between their neighbours; longer gaps are not judged, and a single outlier is no jump.
+    """
+    dt = np.diff(trial.t)
+    n = int(np.clip(np.ceil(SPAN / np.median(dt)), FEWEST, MOST))
+    if trial.n_samples < 6 * n:
+        return []
+    made = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
+    ways = bridged(trial.t[:-1], *made)
+    if ways is None:
+        return []
+    left = [
+        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(way * dt)])
+        for position, way in zip((trial.x, trial.y), ways.T, strict=True)
+    ]
+    ahead = _line_end(n)
+    for first, last in runs_of_true(np.isnan(made[0])):
+        for one in left if last - first > n else ():
+            one[first : last + 1] = np.nan
+    # Rows k + n: what lies before predicts the middle of the step to row k + n, and so does what lies after.
+    steps = [
+        np.lib.stride_tricks.sliding_window_view(one[n:], n) @ ahead[::-1]
+        - np.lib.stride_tricks.sliding_window_view(one[:-n], n) @ ahead
+        for one in left
+    ]
+    size = np.hypot(*steps)
+    # A position that stands for several samples, as of a slow receiver, makes lines of steps; its way in them is usual.
+    usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf
+    speed = np.hypot(trial.u, trial.v_m)
+    least = max(BEYOND * usual, WAY * float(np.nanpercentile(speed, 90.0)))
+    found = _peaks(np.nan_to_num(size), least, n)
+    return [(k + n, float(size[k])) for k in found if _stays([one[k : k + 2 * n] for one in left], 0.5 * least)]
+
+
+def _stays(around: list[FloatArray], least: float) -> bool:
+    """Whether a step in the middle of two channels (2 n,) exceeds ``least`` whichever one sample is left out.
+
+    An outlier comes back at the next sample: without it there is no step.
+    """
+    n = len(around[0]) // 2
+    k = np.arange(2 * n, dtype=np.float64) - n + 0.5
+    for out in range(2 * n):
+        step = []
+        for one in around:
+            ends = []
+            for half in (np.arange(n), np.arange(n, 2 * n)):
+                rows = half[half != out]
+                ends.append(float(np.polynomial.polynomial.polyfit(k[rows], one[rows], 1)[0]))
+            step.append(ends[1] - ends[0])
+        if np.hypot(step[0], step[1]) < least:
+            return False
+    return True
+
+
+def _without_spikes(values: FloatArray) -> FloatArray:
+    """A channel with single samples off the others put between their neighbours: they are told of as spikes."""
+    rows = spikes(values, share=0.02)
+    smooth = values.copy()
+    smooth[rows] = 0.5 * (values[rows - 1] + values[rows + 1])
+    return smooth
+
+
+def _line_end(n: int) -> FloatArray:
+    """(n,) weights that give the end, half a sample ahead, of the line through n equidistant samples."""
+    k = np.arange(n) - 0.5 * (n - 1)
+    return np.asarray(1.0 / n + 0.5 * n * k / float(k @ k))
+
+
+def _peaks(size: FloatArray, least: float, apart: int) -> list[int]:
+    """Largest values beyond ``least``, none within ``apart`` of a larger one, in the order of the record."""
+    left = size.copy()
+    found: list[int] = []
+    while len(left) and left.max() > least:
+        k = int(np.argmax(left))
+        found.append(k)
+        left[max(0, k - apart) : k + apart + 1] = 0.0
+    return sorted(found)
+
+
+def jump_findings(trial: Trial, where: str) -> list[Finding]:
+    """A warning where the position jumps, with the largest step."""
+    found = position_jumps(trial)
+    if not found:
+        return []
+    row, size = max(found, key=lambda one: one[1])
+    times = "once" if len(found) == 1 else f"{len(found)} times"
+    speed = bridged(trial.t, np.hypot(trial.u, trial.v_m))
+    assert speed is not None  # a jump is seen beside what velocities make
+    went = float(speed[row, 0] * (trial.t[row] - trial.t[row - 1]))
+    return [
+        Finding(
+            "warning",
+            f"the position jumps {times}, by {'' if len(found) == 1 else 'up to '}{size:.3g} m",
+            f"{where}, columns 'x' and 'y', row {row}",
+            f"'u', 'v' and 'psi' make {went:.2g} m there",
+            "mark the positions that are wrong as NaN, or cut the trial there",
+        )
+    ]
