@@ -318,8 +318,24 @@ def test_values_of_two_kinds_of_runs_may_be_of_what_was_ordered(values, rudder, 
 )
 def test_values_that_hang_on_one_run_that_hardly_has_one(values, hangs):
     rows = [{"angle": Estimate("x", value * DEG, None, None, 0.04 * DEG)} for value in values]
-    why = belief_with(causes=(SimpleNamespace(runs=by_run("rudder-offset", ("angle",), rows)),))._bent
+    causes = (SimpleNamespace(runs=by_run("rudder-offset", ("angle",), rows)),)
+    why = belief_with(causes=causes, chi2=(1.5, 1.0))._bent
     assert why == ("only one run has a value for certain, and hardly" if hangs else "")
+
+
+@pytest.mark.parametrize(
+    ("values", "chi2_after", "doubted"),
+    [
+        ((0.02, 0.06, -0.05, -0.01), 2.1, True),  # a bank, beside which two of the runs went
+        ((0.02, 0.06, -0.05, -0.01), 1.9, False),
+        ((0.02, 0.06, -0.05, -0.30), 2.1, False),
+    ],
+)
+def test_values_of_which_none_is_certain_that_leave_far_more_than_noise(values, chi2_after, doubted):
+    rows = [{"angle": Estimate("x", value * DEG, None, None, 0.04 * DEG)} for value in values]
+    causes = (SimpleNamespace(runs=by_run("rudder-offset", ("angle",), rows)),)
+    why = belief_with(causes=causes, chi2=(3.7, chi2_after), unlike_any="")._bent
+    assert why == ("no run has a value of it for certain, and these leave far more than noise" if doubted else "")
 
 
 def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():

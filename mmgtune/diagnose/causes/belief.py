@@ -196,6 +196,8 @@ class Belief:
         for runs in filter(None, (cause.runs for cause in self.causes)):
             if runs.doubt:
                 return runs.doubt
+            if runs.in_none and self.chi2[1] > 1.0 + BENT:  # whatever excuses that
+                return "no run has a value of it for certain, and these leave far more than noise"
         return f"beside values of each run it takes {self.unlike_any}" if self.unlike_any else ""
 
     @property

@@ -121,6 +121,11 @@ class ByRun:
         """Whether the values of a group are beyond doubt other than none at all."""
         return self._far(k) > CERTAIN**2 + len(self._sizes)
 
+    @property
+    def in_none(self) -> bool:
+        """Whether no group has a value beyond doubt, nor one that stands out beside the others."""
+        return not any(map(self.shows, range(len(self.groups)))) and self._differ_in_step is None
+
     def _far(self, k: int) -> float:
         """How far the values of a group are from none at all: squares of their standard errors, summed."""
         far = 0.0
