@@ -7,7 +7,7 @@ import itertools
 import re
 import warnings
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -90,13 +90,13 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
     table = table_of(path, log_map, names, columns, first, "row", where)
     table.notes += sheet.notes
     empty = [table.headers[name] for name, values in table.columns.items() if not (values == values).any()]
-    hold_results(path, sheet.name, names, empty)
+    hold_results(path, sheet.name, formulas_in(path, sheet.name, names, empty))
     return table
 
 
-def hold_results(path: Path, sheet: str, names: list[str], empty: list[str]) -> None:
-    """Raise LogError where a column in which there is nothing holds formulas whose results the file does not hold."""
-    for name, formula in formulas_in(path, sheet, names, empty).items():
+def hold_results(path: Path, sheet: str, formulas: Mapping[str, str]) -> None:
+    """Raise LogError for columns that hold formulas, by name, whose results the file does not hold."""
+    for name, formula in formulas.items():
         why = f"a cell says {formula}, and the file does not hold what comes of it"
         fix = "open it in a spreadsheet program and save it again, or save the values alone"
         place = InPart(f"{path}, sheet '{sheet}'")

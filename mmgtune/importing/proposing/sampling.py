@@ -392,9 +392,10 @@ def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
         for k in range(len(names))
     ]
     empty = [one for one, text in zip(names, texts, strict=True) if one and not text.notna().any()]
-    hold_results(path, sheet.name, names, [one for one in empty if quantity_named(one)])
+    formulas = formulas_in(path, sheet.name, names, empty)
+    hold_results(path, sheet.name, {name: one for name, one in formulas.items() if quantity_named(name)})
     made = _made(path, layout, names, below, texts)
-    idle = [f"'{one}'" for one in formulas_in(path, sheet.name, names, empty)]
+    idle = [f"'{one}'" for one in formulas]
     return replace(made, notes=[f"formulas without results are left out: {listed(idle, 6)}"] if idle else [])
 
 
