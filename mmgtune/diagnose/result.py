@@ -32,6 +32,8 @@ class Diagnosis(Answer):
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
     jumped    largest jump of the position of each run that has any, and that was taken in parts there [m]
+    ended     largest value that the log of a channel shows, of those whose sensor is at the end of its range, "u" [m/s]
+              or "r" [rad/s]; what it shows there is left out
     contradicted what the logs say against each other, or what no model of the ship has, in a sentence; told first where
               the answer is unexplained
     swell     that the ship swings in waves, and that nothing is left beside that; "" where it is not so
@@ -145,6 +147,7 @@ class Diagnosis(Answer):
             "headline": said.headline,
             "explained": said.explained,
             "jumped": dict(self.jumped),
+            "ended": dict(self.ended),
             "warnings": list(self.warnings),
             "coverage": self.coverage.to_dict() if self.coverage else {},
             "record": self.record.to_dict() if self.record else None,

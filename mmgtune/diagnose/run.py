@@ -31,6 +31,8 @@ from ..trial import Trial, TrialSet, VoyageSet, another_ship, oddities
 from ..trial.checks.set_checks import turn_away
 from ..trial.checks.swell import period_of, swings
 from ..trial.schema import MOTION
+from .answering.ended import in_words as ends_in_words
+from .answering.ended import within_range
 from .answering.judging import Judge, leaves_much_open
 from .answering.jumped import in_parts
 from .answering.jumped import in_words as jumps_in_words
@@ -161,6 +163,7 @@ def _looked_at(
     if choice is None and options.restart is None:
         trials, jumped = in_parts(trials)
     trials = in_pieces(trials, options.fit_options())
+    trials, ended = within_range(trials, whole)
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
     known = known_causes(profile, seen, options)
@@ -199,10 +202,12 @@ def _looked_at(
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     told = capital(jumps_in_words(jumped))
     beside = [f"{told}: runs are taken in parts there, which begin where their own samples say."] if told else []
+    told = capital(ends_in_words(ended))
+    beside += [f"{told}: what it shows there is left out."] if told else []
     astern = [f"{capital(said)}." for said in reversals(bench.model, seen)]
     odd += astern
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
-    result = replace(result, warnings=warnings, jumped=jumped)
+    result = replace(result, warnings=warnings, jumped=jumped, ended=ended)
     if result.verdict != "unexplained" or choice is not None:
         return result
     if contradicted := _contradicted(whole):

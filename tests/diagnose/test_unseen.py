@@ -69,6 +69,22 @@ def test_causes_are_told_worse_by_most_test_trials_or_not_at_all(before, after, 
     assert not Gain("each", ComparedTrials(), excess, floor=100.0, chance=5.0).worse
 
 
+@pytest.mark.parametrize(
+    ("after", "held_out", "unsure", "off"),
+    [
+        ((1_500, 900), "test", 0.0, True),
+        ((1_500, 900), "test", 1_000.0, False),
+        ((1_500, 900), "each", 0.0, False),
+        ((20, 15), "test", 0.0, False),
+        ((40_000, 20_000), "test", 0.0, False),
+    ],
+    ids=["a rudder slower under load", "coefficients known no better", "left out in turn", "noise", "most remains"],
+)
+def test_a_cause_of_another_form_leaves_far_more_than_noise_on_test_trials(after, held_out, unsure, off):
+    excess = np.column_stack([(60_000, 30_000), after]).astype(float)
+    assert Gain(held_out, ComparedTrials(), excess, floor=100.0, chance=5.0, unsure=unsure).form_is_off is off
+
+
 def left_out(*excess: tuple[float, float], held_out="each") -> Gain:
     """Runs of 100 samples each that were left out in turn, with chi-squared beyond noise before and after causes."""
     compared = [SimpleNamespace(trial=SimpleNamespace(run=str(k), n_samples=100)) for k in range(len(excess))]

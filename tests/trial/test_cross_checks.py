@@ -223,6 +223,19 @@ def test_positions_that_jump(seed: int, by: float, lasting: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
+def test_another_antenna_is_told_beside_the_noise_of_its_receiver(seed: int) -> None:
+    """A jump by fourteen times the noise of each position."""
+    rng = np.random.default_rng(seed)
+    trial = made(zigzag=bool(seed % 2), seed=seed)
+    noise = rng.standard_normal((2, trial.n_samples))
+    still = replace(trial, x=trial.x + noise[0], y=trial.y + noise[1])
+    assert not [one for one in warnings_of(still) if "position jumps" in one]
+    later = 14.0 * (trial.t >= 250.0)
+    jumped = replace(still, x=still.x + later * np.cos(trial.psi), y=still.y + later * np.sin(trial.psi))
+    assert [one for one in warnings_of(jumped) if "position jumps once, by" in one]
+
+
+@pytest.mark.parametrize("seed", range(6))
 def test_positions_that_only_seem_to_jump(seed: int) -> None:
     """Spikes, a receiver once in five seconds, velocities through water, an antenna at the bow, gaps."""
     trial = made(zigzag=bool(seed % 2), seed=seed)

@@ -3,5 +3,6 @@
 judging           causes, their rivals and what they gain
 verdict           what was found; saying: in words a captain understands
 detecting         what the trials could have told; separate: the trial that would tell
-jumped            runs whose position jumps; one_clock: two scales that are one clock
+jumped            runs whose position jumps; ended: sensors at the end of their range
+one_clock         two scales that are one clock
 """

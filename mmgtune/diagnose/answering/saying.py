@@ -12,6 +12,7 @@ from ..evidence.leftover import change_in_words, in_words
 from ..held_out.gain import MOST
 from ..signatures.retuned import besides, far_off, weighed
 from ..signatures.retuned import in_words as moved_in_words
+from .ended import in_words as ends_in_words
 from .jumped import in_words as jumps_in_words
 from .one_clock import clock_rate
 from .verdict import Answer
@@ -58,12 +59,13 @@ def said(answer: Answer) -> Said:
     if answer.verdict == "found" and not answer.causes:
         return Said(" ".join(["No cause that is the same in all voyages shows.", *told]))
     more = [*told, *([answer.together.sentence] if answer.together else [])]
+    of_sensors = "; ".join(filter(None, (jumps_in_words(answer.jumped), ends_in_words(answer.ended))))
+    apart = f"{capital(of_sensors)}. Apart from that: " if of_sensors else ""
     if answer.verdict == "unexplained":
         unknown = _of_the_unknown(answer)
         pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
         first, *why = [*pieces, unknown.why]
-        return Said(first, _joined(*why), unknown.leading, " ".join(more))
-    apart = f"{capital(jumps_in_words(answer.jumped))}. Apart from that: " if answer.jumped else ""
+        return Said(apart + first, _joined(*why), unknown.leading, " ".join(more))
     if answer.verdict == "none":
         one = _of_none(answer)
         return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
@@ -94,6 +96,12 @@ def _of_causes(answer: Answer) -> str:
         )
     named = _joined(named, clock_rate(answer.causes))
     gained = f"{named} {_gained(answer, 'it' if len(answer.causes) == 1 else 'them', _where(answer))}"
+    if answer.gain.form_is_off:
+        gained = (
+            f"{gained} What is left there is {_times(answer.gain.left)} times the noise of the sensors, more than "
+            "coefficients known no better explain: the form of what was found is not quite that of the ship, or "
+            "something smaller is at work beside it."
+        )
     if answer.doubted:
         gained = f"{gained} {answer.doubted.sentence}"
     if not answer.differs_by_run:

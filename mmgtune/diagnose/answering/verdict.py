@@ -52,6 +52,7 @@ class Answer(Belief, Plotted):
     contradicted: str = ""
     swell: str = ""
     jumped: Mapping[str, float] = field(default_factory=dict)
+    ended: Mapping[str, float] = field(default_factory=dict)
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
     read_off: Mapping[str, float] = field(default_factory=dict)

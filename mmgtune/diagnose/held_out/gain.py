@@ -139,6 +139,13 @@ class Gain(Brief):
         return self.held_out == "test" and self.remains and self.left > MISSED
 
     @property
+    def form_is_off(self) -> bool:
+        """Whether causes that tell most of the error leave far more than noise on test trials, and more than uncertain
+        coefficients may be behind."""
+        far = self.left > MISSED and self.leaves_beside(BAND * self.unsure)
+        return self.held_out == "test" and far and not self.remains
+
+    @property
     def too_few(self) -> bool:
         """Whether the other runs predict a run badly that is fitted well together with them: they are too few for what
         is re-tuned."""
@@ -271,7 +278,7 @@ def held_out(found: Found, unseen: Unseen) -> Gain:
     """
     gain = measured(found, unseen)
     bench, test = unseen.bench, unseen.test
-    if not gain.remains or gain.held_out == "only":
+    if gain.held_out == "only" or not (gain.remains or gain.form_is_off):
         return gain
     n = len({trial.run for trial in bench.trials})
     scale = 1.0 if test else n / (n - 1.0)  # fitted without one of the runs

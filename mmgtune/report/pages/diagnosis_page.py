@@ -44,6 +44,7 @@ from .of_runs import of_runs, parameters_of
 _WORDS = {
     "none": "nothing found",
     "jumps": "a position that jumps",
+    "ends": "a sensor at the end of its range",
     "found": "cause found",
     "not-separable": "causes that cannot be told apart",
     "unexplained": "something unknown",
@@ -106,7 +107,9 @@ def build(record: DiagnosisRecord) -> Page:
 
 def _kind(data: Mapping[str, Any]) -> str:
     """The verdict in a few words."""
-    verdict = "jumps" if data["verdict"] == "none" and data.get("jumped") else data["verdict"]
+    verdict = data["verdict"]
+    if verdict == "none":
+        verdict = "jumps" if data.get("jumped") else "ends" if data.get("ended") else verdict
     return _WORDS.get(verdict, clean(verdict))
 
 

@@ -13,7 +13,8 @@ from .control_checks import control_findings
 from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .motion_checks import motion_findings, sway_findings
-from .saturation import saturation_findings, yaw_rate_end
+from .saturation import saturation_findings
+from .sensor_ends import ends_of
 from .standing import standing_findings
 from .surroundings_checks import surroundings_findings
 from .swell import swell_findings
@@ -37,17 +38,17 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
     with np.errstate(all="ignore"):
         motion = motion_findings(trial, where)
         contradicted = any(one.code == "contradicted" for one in motion)
-        end = yaw_rate_end(trial)
-        if end is not None:  # which is why it does not integrate to the heading
-            motion = [one for one in motion if one.code != "yaw-rate"]
+        ends = ends_of([trial])
+        follows = {"yaw-rate": "r", "contradicted": "u"}  # what the end of a sensor is the reason of
+        motion = [one for one in motion if follows.get(one.code) not in ends]
         found = [
             *sway_findings(trial, where),
             *standing_findings(trial, where),
-            *saturation_findings(trial, where, end),
+            *saturation_findings(trial, where, ends),
             *motion,
             *swell_findings(trial, where, L_pp),
             *control_findings(trial, where),
-            *cross_findings(trial, where, L_pp, contradicted),
+            *cross_findings(trial, where, L_pp, contradicted, ends),
             *surroundings_findings(trial, where),
             *wind_findings(trial, where),
             *_facts(trial, where),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -46,17 +47,20 @@ ASTERN = 0.05
 """Share of a run with the propeller turning astern from which it may be that which swings the ship."""
 
 
-def cross_findings(trial: Trial, where: str, L_pp: float | None, contradicted: bool) -> list[Finding]:
+def cross_findings(
+    trial: Trial, where: str, L_pp: float | None, contradicted: bool, ended: Collection[str] = ()
+) -> list[Finding]:
     """Findings on channels that contradict each other.
 
     L_pp          of the ship [m], None where it is not known: what needs it is left out then
     contradicted  whether positions and velocities have been found to differ as a whole
+    ended         channels whose sensors are at the end of their range, which is told of them already
     """
     changes = _changes(trial, where)
     found = [*changes.values(), *_speed(trial, where, L_pp), *_revolutions(trial, where, L_pp)]
     if not contradicted:
-        found += way_by_axis(trial, where)
-        found += part_findings(trial, where)
+        found += way_by_axis(trial, where) if "u" not in ended else []
+        found += part_findings(trial, where, ended)
         if not {"x", "y"} & changes.keys():
             found += jump_findings(trial, where)
     return [*found, *_rudder(trial, where)]

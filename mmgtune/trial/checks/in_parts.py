@@ -6,7 +6,7 @@ takes it for slow noise.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -65,8 +65,8 @@ def changes_within(trial: Trial) -> dict[str, Change]:
     return {name: one._replace(row=int(bounds[one.row])) for name, one in found.items() if one is not None}
 
 
-def part_findings(trial: Trial, where: str) -> list[Finding]:
-    """Findings on factors that change within the run."""
+def part_findings(trial: Trial, where: str, but: Collection[str] = ()) -> list[Finding]:
+    """Findings on factors that change within the run, of channels ``but`` these."""
     against = {"r": ("the heading turns", "columns 'r' and 'psi'"), "u": ("positions go", "columns 'u', 'x' and 'y'")}
     return [
         Finding(
@@ -78,6 +78,7 @@ def part_findings(trial: Trial, where: str) -> list[Finding]:
             f"cut the trial there, or mark '{name}' as NaN where it is wrong",
         )
         for name, one in changes_within(trial).items()
+        if name not in but
     ]
 
 

@@ -12,11 +12,11 @@ from ..model import Trial
 from .finding import Finding
 from .motion_checks import spikes
 
-SPAN = 8.0
+SPAN = 12.0
 """Time [s] on each side of a step over which the track has to lie on one line and then on another."""
 FEWEST, MOST = 5, 100
 """Samples of such a line."""
-BEYOND = 12.0
+BEYOND = 9.0
 """How many times the usual misfit of two neighbouring lines a step exceeds."""
 WAY = 1.0
 """Way [s] at the ship's speed that a step exceeds: what is smaller hardly matters."""

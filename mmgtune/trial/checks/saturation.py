@@ -1,7 +1,9 @@
 """Sensors at the end of their range: a channel that is noisy, and stands still at its largest or smallest value; a yaw
-rate that goes no further, however fast the heading turns."""
+rate or a speed that goes no further, however fast the heading turns or the ship goes."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from ..model import Trial
 from ..schema import MOTION
 from .finding import Finding
 from .motion_checks import longest_run
+from .sensor_ends import End
 
 CHANNELS = tuple(name for name in MOTION if name not in ("x", "y", "psi"))
 """Those that have a range; positions and headings go on for ever."""
@@ -25,20 +28,24 @@ NOISY = -0.3
 """Correlation of neighbouring second differences up to which a channel is noisy: -2/3 for white noise, near 1 for a
 smooth one, which may stand still for good."""
 
-STRETCHES, SHORTEST = 60, 5
-"""Stretches that a record is cut into to hold its yaw rate against its heading, and samples that one has at least."""
 
-BEYOND, SO_MANY = 1.1, 4
-"""How many times as fast as its log the ship turns where that has ended, and stretches in which she does."""
-
-BETTER = 0.35
-"""Error of a yaw rate with an end, as a share of that of one with another scale, up to which it has an end."""
+_ENDS = {
+    "u": ("the speed log ends at {}", "positions", "goes", "log", "'x', 'y' and 'u'"),
+    "r": ("the yaw rate ends at {}", "heading", "turns", "gyro", "'psi' and 'r'"),
+}
 
 
-def saturation_findings(trial: Trial, where: str, end: float | None) -> list[Finding]:
+def in_units(name: str, value: float) -> str:
+    """A speed ahead or a yaw rate in units that people read."""
+    if name == "r":
+        return f"{value / DEG:.3g} deg/s ({value / DEG * 60.0:.3g} deg/min)"
+    return f"{value:.3g} m/s"
+
+
+def saturation_findings(trial: Trial, where: str, ends: Mapping[str, End]) -> list[Finding]:
     """That a channel of the motion stands at the end of its range.
 
-    end  of the yaw rate, see ``yaw_rate_end``; told where that does not stand still there
+    ends  see ``ends_of``; told where a channel does not stand still there
     """
     found, stand = [], set()
     for name in CHANNELS:
@@ -57,41 +64,20 @@ def saturation_findings(trial: Trial, where: str, end: float | None) -> list[Fin
                         "saturated",
                     )
                 )
-    if end is not None and "r" not in stand:
-        found.append(
-            Finding(
-                "warning",
-                f"the yaw rate ends at {end / DEG:.3g} deg/s ({end / DEG * 60.0:.3g} deg/min)",
-                f"{where}, columns 'psi' and 'r'",
-                "it follows the heading up to there, and stays there where the ship turns faster: the gyro, or what "
-                "logs it, is at the end of its range",
-                "mark the yaw rate beyond as NaN: it counts in no comparison then",
-                "saturated",
+    for name, (what, follows, faster, sensor, columns) in _ENDS.items():
+        if name in ends and name not in stand:
+            found.append(
+                Finding(
+                    "warning",
+                    what.format(in_units(name, ends[name].value)),
+                    f"{where}, columns {columns}",
+                    f"it follows the {follows} up to there, and stays there where the ship {faster} faster: the "
+                    f"{sensor}, or what logs it, is at the end of its range",
+                    f"mark '{name}' beyond as NaN: it counts in no comparison then",
+                    "saturated",
+                )
             )
-        )
     return found
-
-
-def yaw_rate_end(trial: Trial) -> float | None:
-    """Yaw rate [rad/s] beyond which that of the log does not go, though the heading turns faster, noise of the sensor
-    or not; None for none."""
-    n = max(SHORTEST, trial.n_samples // STRETCHES)
-    first = np.arange(0, trial.n_samples - n, n)
-    lasts = trial.t[first + n] - trial.t[first]
-    turned = (trial.psi[first + n] - trial.psi[first]) / lasts
-    steps = 0.5 * (trial.r[1:] + trial.r[:-1]) * np.diff(trial.t)
-    logged = np.array([steps[k : k + n].sum() for k in first]) / lasts
-    known = np.isfinite(turned) & np.isfinite(logged)
-    turned, logged = turned[known], logged[known]
-    if len(turned) < 2 * SO_MANY or not np.any(turned) or not np.any(logged):
-        return None
-    scale = float(turned @ logged) / float(turned @ turned)
-    ends = np.linspace(0.5, 1.05, 56) * np.abs(logged).max()
-    left = np.sum((logged - np.clip(turned, -ends[:, None], ends[:, None])) ** 2, axis=1)
-    end = float(ends[int(np.argmin(left))])
-    scaled = float(np.sum((logged - scale * turned) ** 2))
-    ended = np.sum(np.abs(turned) > BEYOND * end) >= SO_MANY and float(left.min()) < BETTER**2 * scaled
-    return end if ended else None
 
 
 def _at_the_end(values: FloatArray) -> int:
