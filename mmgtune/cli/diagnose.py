@@ -196,7 +196,7 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     for one in result.differing:
         lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:
-        lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
+        lines.append(result.suggestion.sentence())
     if result.coverage and result.coverage.to_dict():
         lines += ["", result.coverage.sentence]
     notes = [*map(in_flags, result.warnings), *(f"{words}." for words in in_words(result.profile.doubts()))]

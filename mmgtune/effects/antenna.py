@@ -72,6 +72,7 @@ EFFECT = SensorEffect(
     kind="effects.antenna",
     tag="antenna",
     title="antenna away from midship",
+    told_by="the place of the antenna, measured on board",
     params=Antenna,
     function=antenna,
     inverse=antenna_inverse,

@@ -39,6 +39,7 @@ EFFECT = ActuatorEffect(
     kind="effects.backlash",
     tag="backlash",
     title="play in the rudder linkage",
+    told_by="the angle of the rudder stock, logged beside what moves it",
     of="rudder",
     params=Backlash,
     function=backlash,

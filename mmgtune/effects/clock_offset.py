@@ -17,6 +17,7 @@ EFFECT = ClockEffect(
     kind="effects.clock-offset",
     tag="clock-offset",
     title="clocks of control log and motion log apart",
+    told_by="the clocks of both logs, compared",
     params=ClockOffset,
     cites=(),
     fields={

@@ -102,6 +102,7 @@ EFFECT = SensorEffect(
     kind="effects.compass-deviation",
     tag="compass-deviation",
     title="deviation of the compass",
+    told_by="the heading by bearings or a second compass, on eight headings",
     params=CompassDeviation,
     function=compass_deviation,
     inverse=compass_deviation_inverse,

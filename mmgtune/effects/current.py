@@ -72,6 +72,7 @@ EFFECT = FlowEffect(
     kind="effects.current",
     tag="current",
     title="current",
+    told_by="the drift of the ship stopped in the water, before and after the runs",
     params=Current,
     function=current,
     rate=rate_of_current,

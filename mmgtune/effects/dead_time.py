@@ -20,6 +20,7 @@ EFFECT = ClockEffect(
     kind="effects.dead-time",
     tag="dead-time",
     title="dead time of the steering",
+    told_by="the time from an order to the first movement of the rudder stock, taken on board",
     of="rudder",
     late="ship",
     params=DeadTime,

@@ -163,6 +163,7 @@ class Effect(Component):
     beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
                the surroundings of samples (n_samples,) each, of voyages those with the least and the largest of
                everything; "" where they are not, None where it holds in any
+    told_by    what to measure that tells it from all else, be it on board, alongside or in a log; "" where nothing does
     unvisited  what trials would have to visit for a diagnosis to believe in the effect, from {parameter: value fitted}
                and what they do visit; "" where they visit it, None where any trials will do
     """
@@ -187,6 +188,7 @@ class Effect(Component):
     varies: tuple[str, ...] = ()
     subject: str = ""
     stand_in: tuple[str, ...] = ()
+    told_by: str = ""
     beyond: Callable[[Mapping[str, float], Surroundings], str] | None = None
     unvisited: Callable[[Mapping[str, float], Visited], str] | None = None
 

@@ -57,6 +57,7 @@ EFFECT = ForceEffect(
     kind="effects.engine-droop",
     tag="engine-droop",
     title="engine under load",
+    told_by="the revolutions, counted at the shaft under load",
     params=EngineDroop,
     function=engine_droop,
     cites=(),

@@ -36,6 +36,7 @@ EFFECT = CoefficientsEffect(
     kind="effects.flap",
     tag="flap",
     title="flap linkage",
+    told_by="the angle of the flap, read at several angles of the rudder",
     params=Flap,
     function=flap,
     cites=(),

@@ -38,6 +38,7 @@ EFFECT = ActuatorEffect(
     kind="effects.governor-lag",
     tag="governor-lag",
     title="lag of the engine",
+    told_by="the revolutions, counted at the shaft after a change of the telegraph",
     of="propeller",
     params=GovernorLag,
     function=governor_lag,

@@ -27,6 +27,7 @@ EFFECT = SensorEffect(
     kind="effects.gyro-bias",
     tag="gyro-bias",
     title="bias of the rate gyro",
+    told_by="what the rate gyro shows alongside",
     params=GyroBias,
     function=gyro_bias,
     inverse=gyro_bias_inverse,

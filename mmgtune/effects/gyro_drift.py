@@ -59,6 +59,7 @@ EFFECT = FilterEffect(
     kind="effects.gyro-drift",
     tag="gyro-drift",
     title="drift of the gyro",
+    told_by="the heading by bearings or a second compass, at the beginning and the end of a run",
     params=GyroDrift,
     function=gyro_drift,
     settled=gyro_set,

@@ -26,6 +26,7 @@ EFFECT = SensorEffect(
     kind="effects.gyro-scale",
     tag="gyro-scale",
     title="scale error of the rate gyro",
+    told_by="the yaw rate of a second gyro",
     params=GyroScale,
     function=gyro_scale,
     inverse=gyro_scale_inverse,

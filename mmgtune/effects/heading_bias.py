@@ -42,6 +42,7 @@ EFFECT = SensorEffect(
     kind="effects.heading-bias",
     tag="heading-bias",
     title="bias of the heading",
+    told_by="the heading on leading marks, or by a second compass",
     params=HeadingBias,
     function=heading_bias,
     inverse=heading_bias_inverse,

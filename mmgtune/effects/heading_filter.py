@@ -52,6 +52,7 @@ EFFECT = FilterEffect(
     kind="effects.heading-filter",
     tag="heading-filter",
     title="low-pass of the heading",
+    told_by="the filter that is set in the compass, or a second compass",
     params=HeadingFilter,
     function=heading_filter,
     settled=heading_settled,

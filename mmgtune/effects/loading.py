@@ -65,6 +65,7 @@ EFFECT = CoefficientsEffect(
     kind="effects.loading",
     tag="loading",
     title="draught and trim",
+    told_by="the draughts fore and aft, read from the marks",
     params=Loading,
     function=loading,
     cites=("Inoue, Hirano & Kijima 1981, International Shipbuilding Progress 28, 112-125",),

@@ -30,6 +30,7 @@ EFFECT = SensorEffect(
     kind="effects.log-misalignment",
     tag="log-misalignment",
     title="misalignment of the speed log",
+    told_by="the leeway that the log shows on a straight course in still water",
     params=LogMisalignment,
     function=log_misalignment,
     inverse=log_misalignment_inverse,

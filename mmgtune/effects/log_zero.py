@@ -51,6 +51,7 @@ EFFECT = SensorEffect(
     kind="effects.log-zero",
     tag="log-zero",
     title="zero error of the speed log",
+    told_by="what the speed log shows alongside",
     params=LogZero,
     function=log_zero,
     inverse=log_zero_inverse,

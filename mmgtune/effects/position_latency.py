@@ -61,6 +61,7 @@ EFFECT = FilterEffect(
     kind="effects.position-latency",
     tag="position-latency",
     title="latency of the position",
+    told_by="the delay of the receiver, from its papers or beside a second one",
     params=PositionLatency,
     function=position_latency,
     settled=position_settled,

@@ -50,6 +50,7 @@ EFFECT = ForceEffect(
     kind="effects.resistance",
     tag="resistance",
     title="resistance",
+    told_by="thrust or torque on straight runs, logged at the shaft",
     params=Resistance,
     function=resistance,
     cites=(),

@@ -21,6 +21,7 @@ EFFECT = ActuatorEffect(
     kind="effects.rpm-scale",
     tag="rpm-scale",
     title="scale error of the revolutions",
+    told_by="the revolutions, counted at the shaft",
     of="propeller",
     params=RpmScale,
     function=rpm_scale,

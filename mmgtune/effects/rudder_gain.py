@@ -64,6 +64,7 @@ EFFECT = ActuatorEffect(
     kind="effects.rudder-gain",
     tag="rudder-gain",
     title="scale error of the rudder",
+    told_by="the angle of the rudder stock, read at several angles of the indicator",
     of="rudder",
     params=RudderGain,
     function=rudder_gain,

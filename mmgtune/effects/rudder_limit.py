@@ -30,6 +30,7 @@ EFFECT = ActuatorEffect(
     kind="effects.rudder-limit",
     tag="rudder-limit",
     title="stop of the rudder",
+    told_by="the angle of the rudder stock at hard over",
     of="rudder",
     params=RudderLimit,
     function=rudder_limit,

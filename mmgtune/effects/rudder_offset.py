@@ -22,6 +22,7 @@ EFFECT = ActuatorEffect(
     kind="effects.rudder-offset",
     tag="rudder-offset",
     title="zero error of the rudder",
+    told_by="the angle of the rudder stock where the indicator shows zero",
     of="rudder",
     params=RudderOffset,
     function=rudder_offset,

@@ -130,6 +130,7 @@ EFFECT = FactorsEffect(
     kind="effects.shallow-water",
     tag="shallow-water",
     title="shallow water",
+    told_by="the depth along the track",
     params=ShallowWater,
     function=shallow_water,
     cites=("Kijima et al. 1990, J. Society of Naval Architects of Japan 168, 247-256",),

@@ -67,6 +67,7 @@ EFFECT = SensorEffect(
     kind="effects.speed-scale",
     tag="speed-scale",
     title="scale error of the speed log",
+    told_by="a measured mile, both ways",
     params=SpeedScale,
     function=speed_scale,
     inverse=speed_scale_inverse,

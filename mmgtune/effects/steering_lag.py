@@ -70,6 +70,7 @@ EFFECT = ActuatorEffect(
     kind="effects.steering-lag",
     tag="steering-lag",
     title="rudder trailing its order",
+    told_by="the time the rudder stock takes from hard over to hard over",
     of="rudder",
     params=SteeringLag,
     function=steering_lag,

@@ -32,6 +32,7 @@ EFFECT = CoefficientsEffect(
     kind="effects.thrust",
     tag="thrust",
     title="thrust of the propeller",
+    told_by="thrust and torque, logged at the shaft",
     params=Thrust,
     function=thrust,
     cites=(),

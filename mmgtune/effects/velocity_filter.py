@@ -80,6 +80,7 @@ EFFECT = FilterEffect(
     kind="effects.velocity-filter",
     tag="velocity-filter",
     title="low-pass of the velocities",
+    told_by="the time over which the speed log is set to average",
     params=VelocityFilter,
     function=velocity_filter,
     settled=velocity_settled,

@@ -40,6 +40,7 @@ EFFECT = SensorEffect(
     kind="effects.water-log",
     tag="water-log",
     title="speed log through the water",
+    told_by="whether the log is set to speed through the water or over the ground",
     params=WaterLog,
     function=water_log,
     inverse=water_log_inverse,

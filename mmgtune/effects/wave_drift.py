@@ -34,6 +34,7 @@ EFFECT = ForceEffect(
     kind="effects.wave-drift",
     tag="wave-drift",
     title="drift force of waves",
+    told_by="height and direction of the waves in each run",
     params=WaveDrift,
     function=wave_drift,
     cites=(),

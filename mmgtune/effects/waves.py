@@ -56,6 +56,7 @@ EFFECT = ForceEffect(
     kind="effects.waves",
     tag="waves",
     title="added resistance in waves",
+    told_by="height and direction of the waves in each run",
     params=Waves,
     function=waves,
     cites=(

@@ -57,6 +57,7 @@ EFFECT = ForceEffect(
     kind="effects.wind",
     tag="wind",
     title="wind",
+    told_by="the wind in each run, by a vane and cups above the superstructure",
     params=Wind,
     function=wind,
     cites=("Fujiwara, Ueno & Nimura 1998, J. Society of Naval Architects of Japan 183, 77-90",),

@@ -39,6 +39,7 @@ EFFECT = FlowEffect(
     kind="effects.wind-drift",
     tag="wind-drift",
     title="water driven by the wind",
+    told_by="the drift of the ship stopped in the water, before and after the runs",
     params=WindDrift,
     function=wind_drift,
     cites=("Wu 1983, Journal of Physical Oceanography 13, 1441-1451",),

@@ -32,7 +32,7 @@ def diagnosis(result: Diagnosis) -> View:
         }
         for row in result.candidates
     ]
-    notes = [f"A trial that would tell: {result.suggestion.manoeuvre}."] if result.suggestion else []
+    notes = [result.suggestion.sentence()] if result.suggestion else []
     notes += [f"{words}." for words in in_words(result.profile.doubts())]
     says = [f"Verdict: {result.verdict}. {result.sentence()}"]
     return View(

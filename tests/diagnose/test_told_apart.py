@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
-from mmgtune.diagnose.answering.separate import _apart, holds, menu
+from mmgtune.diagnose.answering.separate import Foretold, Suggestion, apart, holds, menu, suggest
+from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.motions import simulate_trials as sailed
 from mmgtune.orders import run_manoeuvre
 from mmgtune.profile import load_profile, with_effects
@@ -121,11 +123,92 @@ def test_of_terms_alike_on_one_side_that_of_a_hull_of_two_like_sides_is_named(tm
     assert list(result.to_dict()["causes"][0]["parameters"]) == ["Y_vabsv"]
 
 
+def foretold(states, spread=None):
+    """What is foretold of x and y at three samples."""
+    sample, channel = np.repeat(np.arange(3), 2), np.tile([0, 1], 3)
+    return Foretold(np.array(states, float), channel, sample, np.zeros((6, 1)) if spread is None else np.array(spread))
+
+
+SIGMA = np.array([0.5, 0.5, 0.01, 0.02, 0.02, 0.001])
+
+
+def test_what_a_rival_can_take_up_tells_nothing():
+    """It counts (d' (1 + A A')^-1 d): all of d where A is across, hardly any of it where A is along and large."""
+    rng = np.random.default_rng(2)
+    d, A = rng.standard_normal(6), rng.standard_normal((6, 2))
+    there, nowhere = foretold(d), np.zeros(6)
+    assert apart(there, foretold(nowhere), SIGMA)[0] == pytest.approx(np.linalg.norm(d))
+    counted = d @ np.linalg.solve(np.eye(6) + A @ A.T, d)
+    assert apart(there, foretold(nowhere, A), SIGMA)[0] == pytest.approx(np.sqrt(counted))
+    along = apart(there, foretold(nowhere, 100.0 * d[:, None]), SIGMA)
+    assert along[0] < 0.02
+    assert along[1] < 0.01
+    assert apart(there, foretold(nowhere), SIGMA)[1] == pytest.approx(
+        0.5 * max(np.hypot(d[2 * k], d[2 * k + 1]) for k in range(3))
+    )
+
+
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("far", [1e200, np.inf])
 def test_a_motion_that_ran_away_is_infinitely_far_and_no_warning(far):
-    straight = np.zeros((3, 6))
-    away = straight.copy()
-    away[2] = far
-    assert _apart(straight, away, np.ones(6)) == (np.inf, pytest.approx(far * 2.0**0.5))
-    assert _apart(straight, straight + 1.0, np.ones(6))[0] == pytest.approx(18.0**0.5)
+    straight, away = foretold(np.zeros(6)), foretold([0.0, 0.0, 0.0, 0.0, far, far])
+    assert apart(straight, away, SIGMA)[0] == np.inf
+    assert apart(straight, foretold(np.zeros(6), np.full((6, 1), np.inf)), SIGMA) == (np.inf, np.inf)
+
+
+MEASURES = {"rpm-scale": "the revolutions, counted at the shaft", "loading": "the draughts, read from the marks"}
+
+
+@pytest.mark.parametrize(
+    ("manoeuvre", "distance", "measures", "said"),
+    [
+        ("zigzag 10/10", 40.0, {}, "A trial that would tell: zigzag 10/10."),
+        (
+            "zigzag 10/10",
+            40.0,
+            MEASURES,
+            (
+                "A trial that would tell: zigzag 10/10. So would, without a trial: the revolutions, counted at the "
+                "shaft (rpm-scale) or the draughts, read from the marks (loading)."
+            ),
+        ),
+        (
+            "zigzag 10/10",
+            1.0,
+            MEASURES,
+            (
+                "None of 12 trials that were tried would tell. What would tell: the revolutions, counted at the shaft "
+                "(rpm-scale) or the draughts, read from the marks (loading)."
+            ),
+        ),
+        ("zigzag 10/10", 1.0, {}, "None of 12 trials that were tried would tell."),
+    ],
+)
+def test_a_trial_that_would_not_tell_is_not_proposed(manoeuvre, distance, measures, said):
+    one = Suggestion(manoeuvre, ("rpm-scale", "loading"), distance, 0.1, 12, measures)
+    assert one.sentence() == said
+    assert one.to_dict()["trial_tells"] is (distance > 5.0)
+
+
+@pytest.mark.long
+def test_another_draught_and_slower_revolutions_are_told_by_what_is_measured_on_board():
+    """Two fits that tell the bundled trials alike: no trial of the menu would tell what re-tuning can take up."""
+    profile, trials = load_profile("suzaku"), load_trials("suzaku")
+    bench = make_workbench(
+        profile,
+        list(trials.trials.values()),
+        DiagnoseOptions(),
+        ["effects.rpm-scale.factor", "effects.loading.draught"],
+    )
+    base = base_fit(bench)
+    rivals = []
+    for name in ("effects.rpm-scale.factor", "effects.loading.draught"):
+        tag = name.split(".")[1]
+        unit = np.append(base.unit, bench.null([name]))
+        rivals.append((tag, bench.refit((*base.names, name), unit[:, None], base.offsets)))
+    found = suggest(bench, rivals)
+    assert found is not None
+    assert set(found.measures) == {"rpm-scale", "loading"}
+    assert found.tried > 8
+    far = [(tag, replace(point, unit=np.append(point.unit[:-1], 0.9))) for tag, point in rivals]
+    assert suggest(bench, far).distance > found.distance

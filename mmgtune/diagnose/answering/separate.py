@@ -1,4 +1,5 @@
-"""The trial that would tell rivals apart: of a list of feasible ones, that on which they differ most.
+"""The trial that would tell rivals apart: of a list of feasible ones, that on which they differ most, each tuned anew
+to it as far as what was sailed leaves open.
 
 One that was sailed already is not among them: the rivals do equally well on it.
 """
@@ -6,35 +7,60 @@ One that was sailed already is not among them: the rivals do equally well on it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from ...backends import STATES
-from ...motions import Motion, as_trial
-from ...objective import Objective, cases_of
+from ...motions import as_trial
+from ...objective import Objective
 from ...orders import Helmsman, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvre
 from ...trial import Trial
 from ...units import DEG
 from ..bench.workbench import Point, Workbench
+from ..held_out.unseen import problem_on
+from ..signatures.intervals import covariance
+
+TELLS = 5.0
+"""Distance in deviations of the noise from which a trial would tell rivals apart."""
 
 
 @dataclass(frozen=True)
 class Suggestion:
-    """A trial and how far it would separate the rivals.
+    """What would separate the rivals: a trial and how far it would, and what to measure.
 
-    distance   root of the sum of squared differences between the rivals' predictions, in deviations of the noise
-    positions  largest difference of position [m]
+    manoeuvre  the best of the trials that were tried; "" where there is none
+    distance   root of the sum of squared differences that no rival can take up, in deviations of the noise
+    positions  largest such difference of position [m]
+    tried      how many trials
+    measures   what to measure that tells a rival from all else, by its tag
     """
 
     manoeuvre: str
     rivals: tuple[str, ...]
     distance: float
     positions: float
+    tried: int
+    measures: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def trial_tells(self) -> bool:
+        """Whether the manoeuvre would tell."""
+        return bool(self.manoeuvre) and self.distance >= TELLS
+
+    def sentence(self) -> str:
+        """What would tell, in words."""
+        measures = " or ".join(f"{words} ({tag})" for tag, words in self.measures.items())
+        if self.trial_tells:
+            beside = f" So would, without a trial: {measures}." if measures else ""
+            return f"A trial that would tell: {self.manoeuvre}.{beside}"
+        tried = f"None of {self.tried} trials that were tried would tell" if self.tried else ""
+        told = f"What would tell: {measures}" if measures else ""
+        return "".join(f"{words}. " for words in (tried, told) if words).rstrip()
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -43,6 +69,10 @@ class Suggestion:
             "separates": list(self.rivals),
             "distance_in_noise_deviations": self.distance,
             "largest_position_difference_m": self.positions,
+            "trial_tells": self.trial_tells,
+            "trials_tried": self.tried,
+            "measures": dict(self.measures),
+            "in_words": self.sentence(),
         }
 
 
@@ -108,6 +138,8 @@ def menu(unit_time: float) -> list[Feasible]:
     for heading in (0.0, 180.0):
         words = f"straight run on heading {heading:.0f} deg"
         found.append(Feasible(words, Straight(), heading * DEG, 1.0, 12.0 * unit_time, straight))
+    words = "straight run at 50 % of the revolutions, until the speed is steady"
+    found.append(Feasible(words, Straight(), ANY, 0.5, long, straight))
     words = "rudder orders of changing size every two ship lengths"
     found.append(Feasible(words, Weave(2.0 * unit_time), ANY, 1.0, long, wove))
     return found
@@ -165,18 +197,24 @@ def holds(trials: Sequence[Trial], one: Feasible, n: float) -> bool:
 
 
 def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion | None:
-    """The trial on which the rivals (words, fitted point) differ most; None where the approach is not known, or all
-    were sailed.
+    """What would tell which of the rivals (tag, fitted point) it is; None where nothing is known that would.
 
-    Each keeps what it was fitted to; the predictions start from the same state.
+    The predictions start from the same state, known to the noise of the sensors.  Without an approach, or where all
+    trials were sailed, measurements are left.
     """
     profile = bench.model.profile
-    if profile.approach is None or len(rivals) < 2:
+    if len(rivals) < 2:
         return None
+    effects = {effect.tag: effect for effect in bench.model.effects}
+    measures = {tag: effects[tag].told_by for tag, _ in rivals if tag in effects and effects[tag].told_by}
+    best = Suggestion("", tuple(tag for tag, _ in rivals), 0.0, 0.0, 0, measures)
+    if profile.approach is None:
+        return best if measures else None
     objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(STATES, 1.0))
-    best: Suggestion | None = None
+    fitted = [_Fitted.of(bench, point) for _, point in rivals]
     feasible = menu(profile.L_pp / profile.approach.speed)
-    for one in [one for one in feasible if not holds(bench.trials, one, profile.approach.n)]:
+    asked = [one for one in feasible if not holds(bench.trials, one, profile.approach.n)]
+    for one in asked:
         motion = run_manoeuvre(
             profile,
             one.helmsman,
@@ -188,23 +226,68 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
         )
         if motion.diverged:
             continue
-        runs = [_predicted(bench, point, motion, objective) for _, point in rivals]
-        distance, positions = min(_apart(a, b, bench.sigma) for i, a in enumerate(runs) for b in runs[:i])
-        if np.isfinite(distance) and (best is None or distance > best.distance):
-            best = Suggestion(one.words, tuple(label for label, _ in rivals), distance, positions)
-    return best
+        trial = as_trial(profile, motion)
+        runs = [rival.on(bench, trial, objective) for rival in fitted]
+        distance, positions = min(apart(a, b, bench.sigma) for a in runs for b in runs if a is not b)
+        if np.isfinite(distance) and distance > best.distance:
+            best = replace(best, manoeuvre=one.words, distance=distance, positions=positions)
+    return replace(best, tried=len(asked)) if best.manoeuvre or measures else None
 
 
-def _apart(a: FloatArray, b: FloatArray, sigma: FloatArray) -> tuple[float, float]:
-    """Distance of two motions (n_samples, 6) in deviations of the noise, and the largest of their positions [m];
-    infinite where one of them ran away."""
+class Foretold(NamedTuple):
+    """What a fitted point foretells of a trial, in deviations of the noise.
+
+    states   (n_rows,) by sample and channel
+    channel  (n_rows,) which of the states a row is, and of which sample
+    sample   (n_rows,)
+    spread   (n_rows, k) by how much the point may be otherwise: columns of a root of the covariance
+    """
+
+    states: FloatArray
+    channel: IntArray
+    sample: IntArray
+    spread: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """A fitted point, and a root (n_names, n_names) of the covariance of what is free in it, in the unit cube."""
+
+    point: Point
+    names: tuple[str, ...]
+    root: FloatArray
+
+    @classmethod
+    def of(cls, bench: Workbench, point: Point) -> _Fitted:
+        names, spread = covariance(bench, point, at_bounds=True)
+        size, directions = np.linalg.eigh(spread)
+        return cls(point, names, directions * np.sqrt(np.maximum(size, 0.0)))
+
+    def on(self, bench: Workbench, trial: Trial, objective: Objective) -> Foretold:
+        problem = problem_on(bench, self.point, [trial], objective).with_groups([frozenset()])
+        states, slopes, by_offset = (one[0] for one in problem.jacobians(self.point.unit[:, None]))
+        assert problem.sigma is not None  # problems on other trials estimate initial states
+        moved = slopes[:, [self.point.names.index(name) for name in self.names]] @ self.root
+        begun = by_offset * problem.sigma[0]  # the first sample is known to its noise
+        sample, channel = np.nonzero(problem.cases.weight[0] > 0.0)
+        return Foretold(states, channel, sample, np.hstack([moved, begun]))
+
+
+def apart(true: Foretold, other: Foretold, sigma: FloatArray) -> tuple[float, float]:
+    """How far what is true would be from what another rival makes of it, and the largest difference of positions [m];
+    infinite where one of them ran away.
+
+    The other is tuned anew to the trial, as far as the trials that it was fitted to leave open: with its spread A the
+    difference d counts d' (1 + A A')^-1 d, in deviations of the noise.
+    """
+    d, A = true.states - other.states, other.spread
+    if not (np.isfinite(d).all() and np.isfinite(A).all()):
+        return math.inf, math.inf
     with np.errstate(over="ignore"):
-        distance = np.sqrt(np.nansum(((a - b) / sigma) ** 2))
-    return float(distance), float(np.nanmax(np.hypot(*(a - b)[:, :2].T)))
-
-
-def _predicted(bench: Workbench, point: Point, motion: Motion, objective: Objective) -> FloatArray:
-    problem = bench.problem_of(point.names, point.integrator).with_groups([frozenset()])
-    cases = cases_of([as_trial(bench.model.profile, motion)], objective, problem.model.inputs, problem.model.draught)
-    problem = problem.with_cases(cases)
-    return np.asarray(problem.predictor(point.unit[:, None]).predict(cases).states[0, 0])
+        left = d - A @ np.linalg.solve(np.eye(A.shape[1]) + A.T @ A, A.T @ d)
+        distance = np.sqrt(max(float(d @ left), 0.0))
+    x, y = (np.zeros(int(other.sample.max(initial=0)) + 1) for _ in range(2))
+    for name, of in (("x", x), ("y", y)):
+        rows = other.channel == STATES.index(name)
+        of[other.sample[rows]] = left[rows] * sigma[STATES.index(name)]
+    return float(distance), float(np.hypot(x, y).max())

@@ -269,14 +269,20 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
             blocks.append(Prose((f"These trials do not tell apart: {', '.join(map(clean, group))}.",)))
     suggestion = data["suggested_trial"]
     if suggestion:
-        apart = shown(suggestion["largest_position_difference_m"], 3)
-        in_all = shown(suggestion["distance_in_noise_deviations"], 3)
-        would = "The trial that would" if data["groups"] else "The trial that would tell"
-        sentence = f"{would}: {clean(suggestion['manoeuvre'])}."
-        sentence += f" There the explanations differ by up to {apart} m, in all {in_all} deviations of the noise."
-        blocks.append(Prose((sentence,)))
+        blocks.append(Prose((_telling(suggestion),)))
     blocks += unexplained.traces(data)
     return Section("causes", "Causes" if data["causes"] else "What comes closest", tuple(blocks))
+
+
+def _telling(suggestion: Mapping[str, Any]) -> str:
+    """What would tell the causes apart, and how far; records of older versions know a trial alone."""
+    told = clean(suggestion.get("in_words") or f"A trial that would tell: {suggestion['manoeuvre']}.")
+    if not suggestion["manoeuvre"]:
+        return told
+    apart = shown(suggestion["largest_position_difference_m"], 3)
+    in_all = shown(suggestion["distance_in_noise_deviations"], 3)
+    where = "There" if suggestion.get("trial_tells", True) else f"In the best, {clean(suggestion['manoeuvre'])},"
+    return f"{told} {where} the explanations differ by up to {apart} m, in all {in_all} deviations of the noise."
 
 
 _STANDS_IN = (
