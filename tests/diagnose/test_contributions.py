@@ -449,6 +449,15 @@ def test_effects_of_changes_and_of_sides_need_them():
     assert missing == "rudder angles beyond 15 deg (these go to 10 deg)"
 
 
+def test_a_gyro_whose_factor_changes_needs_hard_turns():
+    gyro, turning = find_effect("gyro-scale"), replace(zigzags(20.0), rate=np.linspace(-0.6, 0.6, 400))
+    assert not gyro.unvisited({"factor": 1.0, "curve": -0.1}, turning)
+    gentle = replace(turning, rate=0.2 * turning.rate)
+    assert not gyro.unvisited({"factor": 1.1}, gentle)
+    missing = gyro.unvisited({"factor": 1.0, "curve": -0.1}, gentle)
+    assert missing == "yaw rates r L/U beyond 0.3 (these go to 0.12)"
+
+
 def test_the_bundled_trials_visit_what_every_effect_is_about():
     seen = visited_by(load_trials("suzaku").trials.values(), 83.0)
     for effect in effects():
@@ -865,6 +874,8 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
         explained_share=0.99,
         together=SimpleNamespace(sentence="All trials together say more."),
         contradicted="",
+        jumped={},
+        ended={},
         unclear="one of them is a trace",
         tells_a_part=True,
         leading=most,

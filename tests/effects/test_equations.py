@@ -275,7 +275,8 @@ def test_a_biased_compass_turns_the_axes_and_not_the_track():
     ("tag", "value", "seen"),
     [
         ("gyro-bias", 0.001, {"r": MOVING.r + 0.001}),
-        ("gyro-scale", 1.1, {"r": MOVING.r * 1.1}),
+        ("gyro-scale", (1.1, 0.0, 20.0), {"r": MOVING.r * 1.1}),
+        ("gyro-scale", (1.1, -0.2, 20.0), {"r": MOVING.r * 1.1 * (1.0 - 0.2 * abs(MOVING.r) * 20.0)}),
         ("speed-scale", (1.1, 1.0, 0.0, 3.0), {"u": MOVING.u * 1.1}),
         ("speed-scale", (1.0, 1.1, 0.0, 3.0), {"u": MOVING.u * 1.1, "v_m": MOVING.v_m * 1.1}),
         ("speed-scale", (1.1, 1.0, 0.05, 3.0), {"u": MOVING.u * 1.1 * (1.0 + 0.05 * (MOVING.u - 3.0))}),

@@ -293,6 +293,7 @@ def scale():
     [
         ("gyro-bias", ["rate"], ("r",)),
         ("gyro-scale", ["factor"], ("r",)),
+        ("gyro-scale", ["curve"], ("r",)),
         ("log-zero", ["ahead"], ("u",)),
         ("log-zero", ["abeam"], ("v_m",)),
         ("log-misalignment", ["angle"], ("u", "v_m")),

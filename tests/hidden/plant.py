@@ -439,7 +439,8 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
     u, v = u + zero["ahead"], v + zero["abeam"] + e["unknown-sway-bias"]["magnitude"]
     r = _low_pass(r, smooth["yaw_rate"])
     r = r * (1.0 - e["unknown-gyro-compressed"]["magnitude"] * abs(r) * PROFILE["particulars.L_pp"] / SPEED)
-    r = e["gyro-scale"]["factor"] * r + e["gyro-bias"]["rate"] + e["gyro-drift"]["yaw_rate"] * t
+    curved = 1.0 + e["gyro-scale"]["curve"] * abs(r) * PROFILE["particulars.L_pp"] / SPEED
+    r = e["gyro-scale"]["factor"] * curved * r + e["gyro-bias"]["rate"] + e["gyro-drift"]["yaw_rate"] * t
     late = e["clock-offset"]["seconds"] + e["unknown-clock-drift"]["magnitude"] * t / 600.0
     n, delta = np.interp(t - late, t, n), np.interp(t - late, t, delta)
     held = round(e["unknown-controls-held"]["magnitude"] / STEP)

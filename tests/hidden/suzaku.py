@@ -136,7 +136,7 @@ NULL: dict[str, dict[str, float]] = {
     "velocity-filter": {"over_ground": 0.0, "along_axes": 0.0, "yaw_rate": 0.0, "ahead": 0.0},
     "heading-filter": {"time_constant": 0.0, "alone": 0.0},
     "gyro-drift": {"heading": 0.0, "heading_alone": 0.0, "yaw_rate": 0.0},
-    "gyro-scale": {"factor": 1.0},
+    "gyro-scale": {"factor": 1.0, "curve": 0.0},
     "gyro-bias": {"rate": 0.0},
     "log-misalignment": {"angle": 0.0},
     "speed-scale": {"factor": 1.0, "both": 1.0, "grows": 0.0},

@@ -224,6 +224,8 @@ def test_sensors(still):
     np.testing.assert_allclose(biased[:, PSI], psi + 0.03, atol=1e-12)
     assert biased[10, V] == pytest.approx(turn[10, V] * np.cos(0.03) - turn[10, U] * np.sin(0.03))
     np.testing.assert_allclose(sailed("gyro-scale", factor=1.05)["turn_p35"][:, R], 1.05 * r, atol=1e-15)
+    curved = sailed("gyro-scale", curve=-0.1)["turn_p35"][:, R]
+    np.testing.assert_allclose(curved, r * (1.0 - 0.1 * np.abs(r) * 83.0 / plant.SPEED), atol=1e-15)
     np.testing.assert_allclose(sailed("gyro-bias", rate=1e-3)["turn_p35"][:, R], r + 1e-3, atol=1e-15)
     np.testing.assert_allclose(sailed("speed-scale", factor=0.9)["turn_p35"][:, U], 0.9 * turn[:, U], atol=1e-12)
     scaled = sailed("speed-scale", both=0.9)["turn_p35"]

@@ -77,5 +77,7 @@ UNKNOWN: dict[str, Unknown] = {
         "a bow thruster pushes to starboard for 20 s of each minute", "N", (6e3, -8e3, 1.2e4)
     ),
     "unknown-ice": Unknown("R_0' times 1 + magnitude from 200 s to 320 s", "-", (0.6, 1.0, 1.5)),
-    "unknown-gyro-compressed": Unknown("r logged times 1 - magnitude |r| L_pp / U0", "-", (0.1, 0.15, 0.25)),
+    "unknown-gyro-compressed": Unknown(
+        "r logged times 1 - magnitude |r| L_pp / U0", "-", (0.1, 0.15, 0.25), "gyro-scale"
+    ),
 }
