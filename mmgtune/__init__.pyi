@@ -45,10 +45,13 @@ from .hooks import until_interrupted as until_interrupted
 from .importing import import_logs as import_logs
 from .importing import load_map as load_map
 from .importing import propose_map as propose_map
+from .inspecting import Inspected as Inspected
+from .inspecting import inspect_trials as inspect_trials
 from .learning import Learned as Learned
 from .learning import LearnedEnsemble as LearnedEnsemble
 from .learning import LearnedHybrid as LearnedHybrid
 from .learning import LearnedMixture as LearnedMixture
+from .learning import compare_parts as compare_parts
 from .learning import learn_ensemble as learn_ensemble
 from .learning import learn_hybrid as learn_hybrid
 from .learning import learn_mixture as learn_mixture
@@ -97,8 +100,12 @@ from .planning import write_plan as write_plan
 from .posterior import Posterior as Posterior
 from .posterior import posterior as posterior
 from .posterior import write_posterior as write_posterior
+from .predicting import FitBands as FitBands
 from .predicting import Predicted as Predicted
+from .predicting import fit_bands as fit_bands
 from .predicting import predict as predict
+from .predicting import with_bands as with_bands
+from .predicting import write_fit_bands as write_fit_bands
 from .predicting import write_prediction as write_prediction
 from .predictor import PhysicsPredictor as PhysicsPredictor
 from .predictor import Prediction as Prediction

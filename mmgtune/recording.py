@@ -11,6 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .documents import write_json
+from .errors import must_be_a
 from .files import all_or_none, path_of, refuse_existing, write_text
 from .inputs import INPUTS
 from .motions import Motion, motions, orders_of
@@ -31,11 +32,16 @@ MOST = 400
 
 
 @all_or_none()
-def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folder: Path, command: str) -> None:
-    """Write simulate.json beside the trial files, and the motions its report draws.
+def write_simulation(
+    result: Simulated, folder: Path | str, command: str = "", *, overwrite: bool = False
+) -> dict[str, Any]:
+    """Write simulate.json, and the motions its report draws; ``result.write`` makes trial files.  Returns the document.
 
-    rows  of the runs, as ``Simulated.rows`` has them and with what was added since
+    Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
+    folder = path_of(folder)
+    must_be_a(result, Simulated, "result")
+    refuse_existing([folder / "simulate.json", folder / DRAWN / MOTIONS], overwrite)
     measured = [record.measured.trial if record else None for record in result.records or [None] * len(result.motions)]
     columns = _columns(result.predictor.inputs)
     seen: set[str] = set()
@@ -48,18 +54,16 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
     write_table(folder / DRAWN / MOTIONS, _joined(columns))
     if result.ship is not None:
         write_text(folder / DRAWN / "profile.toml", result.ship.text)
-    write_json(
-        {
-            **result.to_dict(),
-            **made_by(command),
-            "runs": list(rows),
-            "ship": result.ship.name if result.ship else result.predictor.name,
-            "L_pp": result.predictor.L_pp,
-            "inputs": [INPUTS[name].to_dict() for name in result.predictor.inputs],
-            "out": str(folder),
-        },
-        folder / "simulate.json",
-    )
+    document = {
+        **result.to_dict(),
+        **made_by(command),
+        "ship": result.ship.name if result.ship else result.predictor.name,
+        "L_pp": result.predictor.L_pp,
+        "inputs": [INPUTS[name].to_dict() for name in result.predictor.inputs],
+        "out": str(folder),
+    }
+    write_json(document, folder / "simulate.json")
+    return document
 
 
 @all_or_none()

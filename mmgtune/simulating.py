@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -57,6 +57,7 @@ class Simulated(Plotted, Sequence[Motion]):
 
     records  each beside the trial it is of; empty for manoeuvres given as orders
     notes    on what was around the ship
+    bands    on indices of manoeuvres, as ``predicting.with_bands`` adds them: level [%], particles, and runs
     """
 
     predictor: Predictor
@@ -64,6 +65,7 @@ class Simulated(Plotted, Sequence[Motion]):
     records: tuple[TrialRecord, ...]
     options: SimulateOptions
     notes: tuple[str, ...] = ()
+    bands: Mapping[str, Any] | None = None
 
     def __len__(self) -> int:
         return len(self.motions)
@@ -109,9 +111,13 @@ class Simulated(Plotted, Sequence[Motion]):
         return profile_of(self.predictor)
 
     def rows(self) -> list[dict[str, Any]]:
-        """Status, indices, distance to what was measured, and criteria of every run."""
+        """Status, indices, distance to what was measured, and criteria of every run; bands where there are some."""
         records = self.records or (None,) * len(self.motions)
-        return [self._described(motion, record) for motion, record in zip(self.motions, records, strict=True)]
+        rows = [self._described(motion, record) for motion, record in zip(self.motions, records, strict=True)]
+        if self.bands is None:
+            return rows
+        by_id = {run["id"]: {one["index"]: one for one in run["indices"]} for run in self.bands["runs"]}
+        return [{**row, "bands": by_id[row["id"]]} for row in rows]
 
     def write(self, folder: Path | str, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
         """Write every run as a trial file, with its number in the name where there are several members.

@@ -10,7 +10,6 @@ import typer
 from ..options import FitOptions, in_flags
 from ..units import in_time
 from . import common as c
-from .banded import bands_on
 from .exitcodes import ExitCode
 from .options import RunOptions, takes
 from .predict import indices_text
@@ -59,9 +58,8 @@ def command(
 
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
-    from ..fitting import fit, plan_fit, write_document, write_run
-    from ..options import PredictOptions
-    from ..posterior import posterior, write_posterior
+    from ..fitting import fit, plan_fit, write_run
+    from ..predicting import fit_bands, write_fit_bands
     from ..report import render
     from ..run_folders import claimed
 
@@ -88,18 +86,9 @@ def command(
         with_bands = bands and not result.interrupted
         progress.saved(result.interrupted, but=BANDS if with_bands else "")
         if with_bands:
-            drawn = posterior(
-                result.tuned_profile(),
-                data,
-                options.posterior_options(),
-                hooks=progress.hooks(),
-                command=c.command_line(),
-            )
-            found, notes = bands_on(drawn.particles.predictor(options.make_integrator()), PredictOptions())
-            made = write_posterior(drawn, folder, overwrite=True)
-            document["bands"] = {**made, "warnings": [*made["warnings"], *notes], "predicted": found}
-            write_document(document, folder)
-            progress.saved(False, but=BANDS if drawn.interrupted else "")
+            found = fit_bands(result, data, hooks=progress.hooks(), command=c.command_line())
+            document = write_fit_bands(found, folder, overwrite=True)
+            progress.saved(False, but=BANDS if found.interrupted else "")
         if not no_report:
             render(folder)
     if run.json:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,9 @@ from ..options.learning import MixtureOptions
 from . import common as c
 from . import completing
 from .options import RunOptions, takes
+
+if TYPE_CHECKING:
+    from ..learning import LearnedMixture
 
 
 @dataclass(frozen=True)
@@ -65,13 +68,11 @@ def command(
 
       mmgtune learn mixture esso_osaka_3m_hybrid runs/type1 runs/type2 --share 0.35 --out runs/mixture
     """
-    from ..comparing_models import compare_models, write_model_comparison
-    from ..learning import learn_mixture
+    from ..comparing_models import write_model_comparison
+    from ..learning import compare_parts, learn_mixture
     from ..networks import named_ship
     from ..networks.naming import file_of
-    from ..options import CompareModelsOptions
     from ..report import render
-    from ..resources import MODEL
     from ..run_folders import claimed
 
     # What stands last is trials unless it is a trained model; what stands first after the model never is.
@@ -83,37 +84,16 @@ def command(
         result = learn_mixture(given, networks, trials, options, command=c.command_line())
         document = result.write(folder, overwrite=True)
         if trials is not None and not no_report:
-            alone = [f"networks {k + 1}" for k in range(len(networks))] if networks[1:] else ["networks"]
-            several = {"model of forces": given, **dict(zip(alone, networks, strict=True))}
-            if 0.0 < document["share"] < 1.0:
-                several[f"mixture ({document['share']:g})"] = str(folder / MODEL)
-            windows = (
-                CompareModelsOptions() if options.restart is None else CompareModelsOptions(restart=options.restart)
-            )
-            compared = compare_models(several, trials, windows)
-            write_model_comparison(compared, folder, c.command_line(), notes(document), overwrite=True)
+            compared = compare_parts(result, trials)
+            write_model_comparison(compared, folder, c.command_line(), result.notes, overwrite=True)
             render(folder)
     if json:
         c.print_json(document)
     else:
-        c.show(summary(document, repr(result.model), report=trials is not None and not no_report))
+        c.show(summary(result, document, report=trials is not None and not no_report))
 
 
-def notes(document: Mapping[str, Any]) -> tuple[str, ...]:
-    """What to know of the errors and of what was kept."""
-    seen, said = document["seen"], []
-    if seen:
-        which = seen[0] if len(seen) == 1 else f"{seen[0]} ..."
-        said.append(f"A part was trained on {len(seen)} of the trials that chose ({which}): errors flatter it.")
-    if document["tried"] and document["share"] in (0.0, 1.0):
-        kept = "networks alone are" if document["share"] else "model of forces alone is"
-        if document["network"] is not None:
-            kept = f"networks {document['network']} alone are"
-        said.append(f"No gain: no mixture does better than one of its parts, and the {kept} kept.")
-    return tuple(said)
-
-
-def summary(document: Mapping[str, Any], model: str, *, report: bool) -> str:
+def summary(result: LearnedMixture, document: Mapping[str, Any], *, report: bool) -> str:
     """Plain-text summary of the result."""
     lines = []
     if document["tried"]:
@@ -129,8 +109,8 @@ def summary(document: Mapping[str, Any], model: str, *, report: bool) -> str:
             share = f"{row['share']:g}" + (f", networks {row['network']}" if "network" in row else "")
             lines.append(f"{share:<{wide}}{total:>10}" + "".join(f"{one:>12}" for one in errors) + chosen)
         lines += ["error: mean over kinds of manoeuvre of L_MSE over that of the model of forces; * kept", ""]
-    lines += [text for note in notes(document) for text in (note, "")]
-    lines.append(model)
+    lines += [text for note in result.notes for text in (note, "")]
+    lines.append(repr(result.model))
     if report:
         lines.append(f"Report: {document['out']}/report.html")
     lines.append(f"Model: {document['out']}/model.safetensors.")

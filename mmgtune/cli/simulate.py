@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import PredictOptions, SimulateOptions
+from ..options import SimulateOptions
 from ..phrases import listed
 from . import common as c
-from .banded import bands_on
 from .exitcodes import ExitCode
 from .options import takes
 from .predict import banded
 
 if TYPE_CHECKING:
-    from ..predictor import Uncertain
     from ..simulating import Simulated
 
 
@@ -58,38 +56,38 @@ def command(
 
       mmgtune simulate --trials suzaku --out simulated --forces
     """
-    from ..predictor import Uncertain
+    from ..predicting import with_bands
     from ..recording import write_simulation
     from ..report import render
     from ..simulating import simulate
 
     reads = (profile, trials)
     with c.placed(out, force=force, anew=True, reads=reads, forces=forces, no_report=no_report):
-        result = simulate(profile, trials, options)
-        rows = result.rows()
-        notes = list(result.notes)
-        if trials is None and isinstance(result.predictor, Uncertain):
-            notes += _add_bands(rows, result.predictor, options)
+        result = with_bands(simulate(profile, trials, options))
         files: list[Path] = []
         if out is not None:
             files = result.write(out, with_forces=forces, overwrite=force)
-            write_simulation(result, rows, out, c.command_line())
+            write_simulation(result, out, c.command_line(), overwrite=True)
             files += [] if no_report else render(out)[:1]
+    notes = list(result.notes)
+    if result.bands is not None:
+        notes.append(f"±: half the band of {result.bands['level']:g} % of {result.bands['particles']} particles")
     lost = list(dict.fromkeys(motion.id for motion in result.motions if motion.diverged))
     if lost:
         notes.append(f"{listed(lost)} diverged: the ship spins, or is faster than any; none of it is judged or written")
     if json:
-        c.print_json({**result.to_dict(), "runs": rows, "notes": notes, "files": [str(f) for f in files]})
+        c.print_json({**result.to_dict(), "notes": notes, "files": [str(f) for f in files]})
     else:
-        _show(result, rows, notes, files)
+        _show(result, notes, files)
     if lost:
         raise typer.Exit(ExitCode.NO)
 
 
-def _show(result: Simulated, rows: list[dict[str, Any]], notes: list[str], files: list[Path]) -> None:
+def _show(result: Simulated, notes: list[str], files: list[Path]) -> None:
     """The same for people."""
     from ..report import measures
 
+    rows = result.rows()
     for row in rows:
         c.show(_text(row))
     for name, words in measures.about(list(dict.fromkeys(name for row in rows for name in row["measures"] or ()))):
@@ -99,20 +97,6 @@ def _show(result: Simulated, rows: list[dict[str, Any]], notes: list[str], files
     c.say_doubts(result.ship.doubts() if result.ship else ())
     for file in files:
         c.say(f"wrote {file}")
-
-
-def _add_bands(rows: list[dict[str, Any]], ship: Uncertain, options: SimulateOptions) -> list[str]:
-    """Give each run ``bands``: rows by index, as ``predict`` has them.  Returns notes."""
-    from ..simulating import turns_of
-
-    turn = turns_of(options)
-    found, notes = bands_on(ship, PredictOptions(**{**options.shared_with(PredictOptions), "turn": turn}))
-    if found is None:
-        return notes
-    by_id = {run["id"]: {one["index"]: one for one in run["indices"]} for run in found["runs"]}
-    for row in rows:
-        row["bands"] = by_id[row["id"]]
-    return [f"±: half the band of {found['level']:g} % of {found['particles']} particles", *notes]
 
 
 def _text(result: dict[str, Any]) -> str:

@@ -87,37 +87,24 @@ def inspect(
 
       mmgtune trials inspect suzaku
     """
-    from ..motions import SHORT_GAP, track_if_whole, trial_indices
-    from ..profile import load_profile
-    from ..resources import profile_names
-    from ..trial import load_trials
-    from ..trial.describe import describe
+    from ..inspecting import inspect_trials
+    from ..motions import SHORT_GAP, track_if_whole
     from ..trial.index_trial import shown_index
 
-    data = load_trials(trials)
-    name = profile or data.ship
-    if profile is None and name not in profile_names():
-        what = f"the trials are of '{name}'" if name else "the trials do not say which ship they are of"
-        why, fix = "indices are counted in ship lengths", "name the ship's profile with --profile"
-        raise OptionError(Problem(what + ", which is no bundled profile" * bool(name), trials, why, fix))
-    ship = load_profile(name)
-    c.warn_of_another_ship(ship, data)
-    L_pp = ship.L_pp
-    rows = []
-    for name, trial in data.trials.items():
-        rows.append({**describe(trial), "role": data.role(name), "indices": trial_indices(trial, L_pp)})
-    stated = [{**one.describe(), "role": data.role(one.id)} for one in data.stated.values()]
+    found = inspect_trials(trials, profile)
+    for note in found.notes:
+        c.say(f"warning: {note}")
     if json:
-        about = {"L_pp_m": L_pp, "trials": rows, **({"stated": stated} if stated else {})}
-        c.print_json({"schema": 1, "kind": "trials-inspect", **about})
+        c.print_json(found.to_dict())
         return
+    data, L_pp = found.trials, found.L_pp
     for one in data.stated.values():
         c.show(f"{one.id}  {one.ship} {one.order} ({one.source or 'source not stated'}), {data.role(one.id)}")
         for index, (value, tolerance) in one.stated(L_pp).items():
             (shown, unit), (off, _) = shown_index(index, value, L_pp), shown_index(index, tolerance, L_pp)
             assumed = ", tolerance assumed" if one.indices[index].assumed else ""
             c.show(f"  {index:<34}{shown:.4g} +- {off:.2g} {unit}{assumed}")
-    for row in rows:
+    for row in found.rows:
         c.show(
             f"{row['id']}  {row['ship']} {row['manoeuvre']} ({row['source'] or 'source not stated'}), "
             f"{row['role']}, {counted(row['n_samples'], 'sample')}, {row['duration_s']:g} s"

@@ -20,7 +20,7 @@ from ..hooks import Hooks
 from .ensemble_run import LearnedEnsemble, learn_ensemble
 from .folder import write_learned
 from .hybrid_run import LearnedHybrid, learn_hybrid
-from .mixing import LearnedMixture, learn_mixture
+from .mixing import LearnedMixture, compare_parts, learn_mixture
 from .reading import Reading, read_network
 from .run import Learned, learn_rnn
 
@@ -31,6 +31,7 @@ __all__ = [
     "LearnedHybrid",
     "LearnedMixture",
     "Reading",
+    "compare_parts",
     "learn_ensemble",
     "learn_hybrid",
     "learn_mixture",

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import limits
+from ..comparing_models import ModelComparison, compare_models
 from ..documents import finite, write_json
-from ..errors import OptionError, Problem, brief, kind_of, reason
+from ..errors import OptionError, Problem, brief, kind_of, must_be_a, reason
 from ..files import all_or_none, path_of, refuse_existing
 from ..given import TrialsGiven, trials_of
 from ..networks import (
@@ -25,6 +26,7 @@ from ..networks import (
 from ..networks.ensemble import EnsemblePredictor
 from ..networks.hybrid import Hybrid, silent
 from ..objective import spread, varying
+from ..options import CompareModelsOptions
 from ..options.choice import must_be
 from ..options.learning import MixtureOptions
 from ..predictor import Predictor
@@ -34,6 +36,7 @@ from ..provenance import made_by
 from ..resources import MODEL
 from ..scores import L_MSE, by_manoeuvre, score
 from ..trial import Trial, TrialSet
+from ..validating import Scorable
 from .choosing import pieces_of
 
 RESULT = "mixture.json"
@@ -69,6 +72,7 @@ class LearnedMixture:
     tried    share by share, with 0, the hybrid alone, and 1, each of the networks alone; empty where nothing chose
     seen     runs among those that chose which a part was trained on: their errors flatter it
     network  which of several networks is kept alone, counted from 1; None where none is
+    parts    what was put together, as it was given, by what a comparison calls it
     """
 
     written_by = "write_learned"
@@ -79,11 +83,28 @@ class LearnedMixture:
     options: MixtureOptions
     provenance: dict[str, Any]
     network: int | None = None
+    parts: Mapping[str, Scorable] = field(default_factory=dict)
 
     @property
     def share(self) -> float:
         """Of the networks."""
         return self.model.share if isinstance(self.model, Mixture) else float(isinstance(self.model, Network))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to know of the errors and of what was kept, in sentences."""
+        said = []
+        if self.seen:
+            which = self.seen[0] if len(self.seen) == 1 else f"{self.seen[0]} ..."
+            said.append(
+                f"A part was trained on {len(self.seen)} of the trials that chose ({which}): errors flatter it."
+            )
+        if self.tried and self.share in (0.0, 1.0):
+            kept = "networks alone are" if self.share else "model of forces alone is"
+            if self.network is not None:
+                kept = f"networks {self.network} alone are"
+            said.append(f"No gain: no mixture does better than one of its parts, and the {kept} kept.")
+        return tuple(said)
 
     def as_ship(self) -> Mixture | Hybrid | Network:
         """What was trained: what the result stands for where a ship is wanted."""
@@ -172,7 +193,28 @@ def learn_mixture(
     if isinstance(best, Mixture):
         best = Mixture(hybrid, nets, best.share, facts)
     told = {"hybrid": hybrid.facts, "networks": [one.facts for one in nets]}
-    return LearnedMixture(best, tuple(tried), seen, options, {**made, "parts": told}, which)
+    alone = [f"networks {k + 1}" for k in range(len(several))] if several[1:] else ["networks"]
+    given = {"model of forces": model, **dict(zip(alone, several, strict=True))}
+    return LearnedMixture(best, tuple(tried), seen, options, {**made, "parts": told}, which, given)
+
+
+def compare_parts(
+    result: LearnedMixture, trials: TrialsGiven, options: CompareModelsOptions | None = None
+) -> ModelComparison:
+    """The parts of a mixture side by side on trials, and with them the mixture where it is what was kept.
+
+    trials   objects, a path or a bundled name
+    options  of the comparison; None takes windows as the share was chosen by
+    Raises OptionError as ``compare_models`` does.
+    """
+    must_be_a(result, LearnedMixture, "result")
+    several = dict(result.parts)
+    if isinstance(result.model, Mixture):
+        several[f"mixture ({result.share:g})"] = result
+    if options is None:
+        chosen = result.options.restart
+        options = CompareModelsOptions() if chosen is None else CompareModelsOptions(restart=chosen)
+    return compare_models(several, trials, options)
 
 
 class _Candidate(NamedTuple):

@@ -9,9 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 from mmgtune.cli import app
-from mmgtune.cli.learn_mixture import notes, summary
+from mmgtune.cli.learn_mixture import summary
 from mmgtune.errors import OptionError, OutputError
-from mmgtune.learning import learn_mixture, write_learned
+from mmgtune.learning import compare_parts, learn_mixture, write_learned
 from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.networks import Hybrid, Mixture, MixturePredictor, Network, load_network, save_network
 from mmgtune.networks.hybrid import silent
@@ -109,6 +109,16 @@ def test_several_networks_drive_her_together(parts, other):
     assert min(one.score for one in alone.tried) > 100.0 * rows[0.4, None]
 
 
+def test_the_parts_are_compared_with_the_mixture_where_that_is_kept(parts, made):
+    kept = learn_mixture(*parts, made, replace(FEW, restart=60.0))
+    compared = compare_parts(kept, made)
+    assert [one.name for one in compared.models] == ["model of forces", "networks", "mixture (0.4)"]
+    assert compared.options.restart == 60.0
+    assert kept.notes == ()
+    given = learn_mixture(*parts, options=MixtureOptions(share=(0.3,)))
+    assert [one.name for one in compare_parts(given, made).models][-1] == "mixture (0.3)"
+
+
 def test_where_one_of_several_networks_does_best_alone_it_is_kept(parts, other):
     profile, net = parts
     one = other.member(1)
@@ -119,8 +129,8 @@ def test_where_one_of_several_networks_does_best_alone_it_is_kept(parts, other):
     assert (result.share, result.network) == (1.0, 2)
     assert isinstance(result.model, Network)
     assert result.model.mirrored
-    assert "networks 2 alone are kept" in notes(result.to_dict())[-1]
-    said = summary({**result.to_dict(), "out": "runs/x"}, repr(result.model), report=False)
+    assert "networks 2 alone are kept" in result.notes[-1]
+    said = summary(result, {**result.to_dict(), "out": "runs/x"}, report=False)
     (kept,) = [line for line in said.splitlines() if line.endswith("*")]
     assert kept.startswith("1, networks 2 ")
 

@@ -96,13 +96,13 @@ def _validate(folder: Path) -> None:
 def _simulate(folder: Path) -> None:
     result = simulate("suzaku", None, SimulateOptions(turn=("35",), zigzag=("10/10",)))
     result.write(folder)
-    write_simulation(result, result.rows(), folder, "mmgtune simulate --turn 35 --zigzag 10/10 --out run")
+    write_simulation(result, folder, "mmgtune simulate --turn 35 --zigzag 10/10 --out run")
 
 
 def _trials(folder: Path) -> None:
     result = simulate("suzaku", two_trials(), SimulateOptions())
     result.write(folder)
-    write_simulation(result, result.rows(), folder, "mmgtune simulate --trials suzaku --out run")
+    write_simulation(result, folder, "mmgtune simulate --trials suzaku --out run")
 
 
 def _check(folder: Path) -> None:

@@ -60,7 +60,7 @@ def test_of_a_prediction_on_trials(tmp_path: Path) -> None:
 def test_of_a_simulation(tmp_path: Path) -> None:
     result = simulate("suzaku", None, SimulateOptions(turn=("35",), speed="5 m/s"))
     assert result.rows()[0]["approach"] == pytest.approx({"speed_m_per_s": 5.0, "rpm": 106.0})
-    write_simulation(result, result.rows(), tmp_path, "")
+    write_simulation(result, tmp_path, "")
     assert lead(tmp_path) == (
         "Approach straight ahead at 5 m/s (9.72 kn) and 106 rpm. All numbers are simulated, none is measured."
     )
