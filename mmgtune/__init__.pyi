@@ -7,11 +7,13 @@ from .checking import read_baseline as read_baseline
 from .checking import record_baseline as record_baseline
 from .checking import update_baseline as update_baseline
 from .checking import write_baseline as write_baseline
+from .checking import write_check as write_check
 from .comparing_models import ModelComparison as ModelComparison
 from .comparing_models import compare_models as compare_models
 from .comparing_models import write_model_comparison as write_model_comparison
 from .comparing_profiles import Comparison as Comparison
 from .comparing_profiles import compare_profiles as compare_profiles
+from .comparing_profiles import write_comparison as write_comparison
 from .diagnose import Diagnosis as Diagnosis
 from .diagnose import diagnose as diagnose
 from .diagnose import write_diagnosis as write_diagnosis
@@ -30,6 +32,7 @@ from .fitting import leave_out as leave_out
 from .fitting import sweep as sweep
 from .fitting import write_left_out as write_left_out
 from .fitting import write_run as write_run
+from .fitting import write_sweep as write_sweep
 from .fleet import FleetPlan as FleetPlan
 from .fleet import FleetRun as FleetRun
 from .fleet import plan_fleet as plan_fleet
@@ -112,6 +115,8 @@ from .predictor import Prediction as Prediction
 from .predictor import Predictor as Predictor
 from .profile import ShipProfile as ShipProfile
 from .profile import load_profile as load_profile
+from .recording import write_simulation as write_simulation
+from .recording import write_validation as write_validation
 from .repeating import repeat as repeat
 from .report import render as render
 from .scores import score as score

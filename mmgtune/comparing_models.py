@@ -17,9 +17,7 @@ from typing import Any, TypeVar, cast
 
 from .bands import Pooled, WindowScore, pooled
 from .displayed import Brief, Displayed
-from .documents import write_json
-from .errors import OptionError, Problem, closest, must_be_a
-from .files import all_or_none, path_of, refuse_existing
+from .errors import OptionError, Problem, closest
 from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
@@ -27,12 +25,11 @@ from .options.choice import must_be
 from .predictor import Predictor, Sampling, Uncertain, of_another_ship, particles_of, profile_of
 from .provenance import made_by
 from .recording import MOST, write_motions
-from .run_folders import MOTIONS
+from .run_files import MODEL_COMPARISON, MOTIONS
 from .scores import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, off_by, score, window_scores
 from .trial import Trial, TrialSet
 from .validating import Scorable, predictors_of, sigma_of
-
-RESULT = "model_comparison.json"
+from .writing_results import place_for, write_record
 
 ONE_BY_ONE = "berthing"
 """Kind of manoeuvre of which each run has a column too: no two are alike."""
@@ -308,7 +305,6 @@ def _only(data: TrialSet, only: Sequence[str]) -> TrialSet:
     )
 
 
-@all_or_none()
 def write_model_comparison(
     result: ModelComparison,
     folder: Path | str,
@@ -323,17 +319,13 @@ def write_model_comparison(
 
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, ModelComparison, "result")
-    refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
-    pieces = list(result.data.trials.values())[:MOST]
-    names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
-    document = {
-        **result.to_dict(command),
-        "notes": [*result.notes, *notes],
-        "L_pp": result.models[0].predictor.L_pp,
-        "inputs": [INPUTS[name].to_dict() for name in names],
-        "out": str(folder),
-    }
-    write_json(document, folder / RESULT)
-    return document
+    with place_for(result, ModelComparison, folder, MODEL_COMPARISON, MOTIONS, overwrite=overwrite) as place:
+        pieces = list(result.data.trials.values())[:MOST]
+        names = write_motions({one.name: one.predictor for one in result.models}, pieces, place)
+        document = {
+            **result.to_dict(command),
+            "notes": [*result.notes, *notes],
+            "L_pp": result.models[0].predictor.L_pp,
+            "inputs": [INPUTS[name].to_dict() for name in names],
+        }
+        return write_record(document, place, MODEL_COMPARISON)

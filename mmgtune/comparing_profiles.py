@@ -11,9 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .displayed import Displayed
-from .documents import write_json
 from .errors import OptionError, Problem
-from .files import path_of, refuse_existing
 from .given import ShipGiven, ship_of
 from .motions import breakdown
 from .options import SimulateOptions
@@ -21,10 +19,11 @@ from .physics.prime import force_unit, moment_unit
 from .physics.quantities import STATES
 from .profile import ShipProfile
 from .profile.changing import scale_of
+from .run_files import COMPARISON
 from .simulating import simulate
 from .units import DEG
+from .writing_results import place_for, write_record
 
-RESULT = "comparison.json"
 ANGLES = tuple(float(angle) for angle in np.linspace(-30.0, 30.0, 61))
 """Drift angles forces are drawn over [deg]."""
 
@@ -58,6 +57,8 @@ class Comparison(Displayed):
     profiles  what they were called
     """
 
+    written_by = "write_comparison"
+
     profiles: tuple[str, str]
     ships: tuple[ShipProfile, ShipProfile]
     data: Mapping[str, Any]
@@ -71,13 +72,14 @@ class Comparison(Displayed):
         """For JSON."""
         return dict(self.data)
 
-    def write(self, folder: Path | str, overwrite: bool = False) -> Path:
-        """Write the record into a folder; its path.  Raises OutputError where there is one already."""
-        folder = path_of(folder)
 
-        path = folder / RESULT
-        refuse_existing([path], overwrite)
-        return write_json(self.to_dict(), path, overwrite)
+def write_comparison(result: Comparison, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
+    """Write the record into a run folder.  Returns it.
+
+    Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
+    """
+    with place_for(result, Comparison, folder, COMPARISON, overwrite=overwrite) as place:
+        return write_record(result.to_dict(), place, COMPARISON)
 
 
 def compare_profiles(a: ShipGiven, b: ShipGiven) -> Comparison:

@@ -97,6 +97,7 @@ def all_or_none() -> Iterator[None]:
     What was there before and was replaced stays replaced.
     """
     made: list[Path] = []
+    outer = _TOGETHER.get()
     token = _TOGETHER.set(made)
     try:
         yield
@@ -105,6 +106,9 @@ def all_or_none() -> Iterator[None]:
             with contextlib.suppress(OSError):
                 path.unlink()
         raise
+    else:
+        if outer is not None:  # one of several such contexts, of which none is to stay where a later one fails
+            outer += made
     finally:
         _TOGETHER.reset(token)
 

@@ -16,9 +16,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .displayed import Displayed
-from .documents import write_json
-from .errors import OptionError, Problem, must_be_a
-from .files import path_of, refuse_existing
+from .errors import OptionError, Problem
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS
 from .networks import named_ship
@@ -28,9 +26,9 @@ from .physics.actuation import actuated
 from .physics.quantities import UNKNOWN
 from .predictor import Fleet, Predictor, Uncertain, as_predictor
 from .profile import Actuator, ShipProfile
+from .run_files import HEADING_STUDY
 from .units import DEG
-
-RESULT = "heading_keeping.json"
+from .writing_results import place_for, write_record
 
 CLEARLY = 0.95
 """Share of the true score below which a promise is clearly too good."""
@@ -194,12 +192,8 @@ def write_heading_study(
 
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, HeadingStudy, "result")
-    refuse_existing([folder / RESULT], overwrite)
-    document = {**result.to_dict(command), "out": str(folder)}
-    write_json(document, folder / RESULT)
-    return document
+    with place_for(result, HeadingStudy, folder, HEADING_STUDY, overwrite=overwrite) as place:
+        return write_record(result.to_dict(command), place, HEADING_STUDY)
 
 
 def best(scores: FloatArray, gains: FloatArray) -> tuple[float, float]:

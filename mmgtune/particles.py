@@ -25,12 +25,9 @@ from .model import Model
 from .parquet_tables import write_table
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
-from .resources import PARTICLES, must_be_name
+from .resources import must_be_name
 from .trial.footer import rows_of
 from .trial.parquet import numbers as plain_numbers
-
-FILE = PARTICLES
-"""What the file is called in a run folder."""
 
 KEY = b"mmgtune_particles"
 SCHEMA = 1

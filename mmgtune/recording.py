@@ -10,28 +10,23 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
-from .documents import write_json
-from .errors import must_be_a
-from .files import all_or_none, path_of, refuse_existing, write_text
+from .files import write_text
 from .inputs import INPUTS
 from .motions import Motion, motions, orders_of
 from .parquet_tables import write_table
 from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
 from .provenance import made_by
-from .run_folders import MOTIONS
+from .run_files import DRAWN, MOTIONS, PROFILE, SIMULATION, VALIDATION
 from .simulating import Simulated
-from .trial import Trial, TrialSet
+from .trial import Trial
 from .validating import Validation
-
-DRAWN = "drawn"
-"""Folder inside that of a simulation, which holds trial files, with what only its report needs."""
+from .writing_results import place_for, write_record
 
 MOST = 400
 """Trials or windows whose motions are kept for the report of a validation."""
 
 
-@all_or_none()
 def write_simulation(
     result: Simulated, folder: Path | str, command: str = "", *, overwrite: bool = False
 ) -> dict[str, Any]:
@@ -39,9 +34,23 @@ def write_simulation(
 
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, Simulated, "result")
-    refuse_existing([folder / "simulate.json", folder / DRAWN / MOTIONS], overwrite)
+    drawn = f"{DRAWN}/{MOTIONS}"
+    with place_for(result, Simulated, folder, SIMULATION, drawn, overwrite=overwrite) as place:
+        write_table(place / drawn, _simulated(result))
+        if result.ship is not None:
+            write_text(place / DRAWN / PROFILE, result.ship.text)
+        document = {
+            **result.to_dict(),
+            **made_by(command),
+            "ship": result.ship.name if result.ship else result.predictor.name,
+            "L_pp": result.predictor.L_pp,
+            "inputs": [INPUTS[name].to_dict() for name in result.predictor.inputs],
+        }
+        return write_record(document, place, SIMULATION)
+
+
+def _simulated(result: Simulated) -> dict[str, Any]:
+    """Columns of motions.parquet: the runs of the first member, and beside them the trials they are of."""
     measured = [record.measured.trial if record else None for record in result.records or [None] * len(result.motions)]
     columns = _columns(result.predictor.inputs)
     seen: set[str] = set()
@@ -51,50 +60,31 @@ def write_simulation(
             seen.add(trial.id)
         if motion.member == 0:
             _add(columns, motion.id, "simulated", motion.t, motion.states, motion.controls)
-    write_table(folder / DRAWN / MOTIONS, _joined(columns))
-    if result.ship is not None:
-        write_text(folder / DRAWN / "profile.toml", result.ship.text)
-    document = {
-        **result.to_dict(),
-        **made_by(command),
-        "ship": result.ship.name if result.ship else result.predictor.name,
-        "L_pp": result.predictor.L_pp,
-        "inputs": [INPUTS[name].to_dict() for name in result.predictor.inputs],
-        "out": str(folder),
-    }
-    write_json(document, folder / "simulate.json")
-    return document
+    return _joined(columns)
 
 
-@all_or_none()
 def write_validation(
-    result: Validation, data: TrialSet, folder: Path | str, command: str = "", *, overwrite: bool = False
+    result: Validation, folder: Path | str, command: str = "", *, overwrite: bool = False
 ) -> dict[str, Any]:
     """Write validate.json, and the motions of the first member of each predictor.  Returns the document.
 
-    data  the trials the predictors were scored on
-
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    refuse_existing([folder / "validate.json", folder / MOTIONS], overwrite)
-    restart = result.options.restart
-    pieces = list((data.in_windows(restart) if restart else data).trials.values())[:MOST]
-    offsets = {one.name: one.offsets[: len(pieces)] for one in result.profiles if one.offsets is not None}
-    names = write_motions({one.name: one.predictor for one in result.profiles}, pieces, folder, offsets)
-    ships = [profile for one in result.profiles if (profile := profile_of(one.predictor)) is not None]
-    document = {
-        **result.to_dict(),
-        **made_by(command),
-        "ship": ships[0].name if ships else result.profiles[0].predictor.name,
-        "L_pp": result.profiles[0].predictor.L_pp,
-        "sources": {trial.id: trial.source for trial in pieces},
-        "inputs": [INPUTS[name].to_dict() for name in names],
-        "orders": orders_of(list(data.trials.values())[:MOST], result.profiles[0].predictor.L_pp),
-        "out": str(folder),
-    }
-    write_json(document, folder / "validate.json")
-    return document
+    with place_for(result, Validation, folder, VALIDATION, MOTIONS, overwrite=overwrite) as place:
+        pieces = result.pieces[:MOST]
+        offsets = {one.name: one.offsets[: len(pieces)] for one in result.profiles if one.offsets is not None}
+        names = write_motions({one.name: one.predictor for one in result.profiles}, pieces, place, offsets)
+        ships = [profile for one in result.profiles if (profile := profile_of(one.predictor)) is not None]
+        document = {
+            **result.to_dict(),
+            **made_by(command),
+            "ship": ships[0].name if ships else result.profiles[0].predictor.name,
+            "L_pp": result.profiles[0].predictor.L_pp,
+            "sources": {trial.id: trial.source for trial in pieces},
+            "inputs": [INPUTS[name].to_dict() for name in names],
+            "orders": orders_of(result.whole[:MOST], result.profiles[0].predictor.L_pp),
+        }
+        return write_record(document, place, VALIDATION)
 
 
 def write_motions(

@@ -6,14 +6,9 @@ import warnings
 from pathlib import Path
 
 from .errors import MmgtuneError, Problem, brief, kind_of, reason
+from .run_files import CALM, MODEL, PARTICLES, PROFILE
 
 _PACKAGE = Path(__file__).resolve().parent
-
-PROFILE, PARTICLES, MODEL = "profile.toml", "particles.parquet", "model.safetensors"
-"""What a run folder holds of a ship: a fit or diagnosis her profile, others particles of her or a trained model."""
-
-_BESIDE = "calm.toml"
-"""What a diagnosis may leave beside her profile."""
 
 DOCUMENTS = (".html", ".json", ".jsonl", ".md", ".npz", ".pdf", ".svg")
 """How names of files end that runs leave behind and that hold no ship."""
@@ -72,7 +67,7 @@ def in_run(name: str | Path, file: str) -> Path | None:
     path = Path(name) / file
     if not path.is_file():
         return None
-    others = {one.name for one in path.parent.glob("*.toml")} - {PROFILE, _BESIDE}
+    others = {one.name for one in path.parent.glob("*.toml")} - {PROFILE, CALM}
     return None if file == PROFILE and others else path
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextvars import ContextVar
 from pathlib import Path
 
+from . import run_files as names
 from .errors import OutputError, Problem
 from .files import (
     alone_in,
@@ -21,51 +22,50 @@ from .files import (
 )
 
 RESULTS = (
-    "fit.json",
-    "sweep.json",
-    "diagnosis.json",
-    "leave_out.json",
-    "voyages.json",
-    "learning.json",
-    "ensemble.json",
-    "hybrid.json",
+    names.FIT,
+    names.SWEEP,
+    names.DIAGNOSIS,
+    names.LEFT_OUT,
+    names.VOYAGES,
+    names.LEARNING,
+    names.ENSEMBLE,
+    names.HYBRID,
 )
 """Results of runs that can be resumed: one is there once its run has ended."""
 
 MARKS = (
     *RESULTS,
-    "validate.json",
-    "checked.json",
-    "simulate.json",
-    "comparison.json",
-    "model_comparison.json",
-    "predict.json",
-    "plan.json",
-    "heading_keeping.json",
-    "bands.parquet",
-    "tracks.parquet",
-    "mixture.json",
-    "model.safetensors",
-    "posterior.json",
-    "particles.parquet",
-    "windows.parquet",
-    "drawn.parquet",
-    "journal.jsonl",
-    "posterior.journal.jsonl",
-    "checkpoint.npz",
+    names.VALIDATION,
+    names.CHECKED,
+    names.SIMULATION,
+    names.COMPARISON,
+    names.MODEL_COMPARISON,
+    names.PREDICTION,
+    names.PLAN,
+    names.HEADING_STUDY,
+    names.BANDS,
+    names.TRACKS,
+    names.MIXTURE,
+    names.MODEL,
+    names.POSTERIOR,
+    names.PARTICLES,
+    names.WINDOWS,
+    names.DRAWN_WINDOWS,
+    names.JOURNAL,
+    names.POSTERIOR_JOURNAL,
+    names.CHECKPOINT,
 )
 """What tells a run folder: files that nobody else has."""
 
-MOTIONS = "motions.parquet"
-"""Tracks that a report draws."""
-
-BESIDE = ("profile.toml", "calm.toml", "history.parquet", MOTIONS, "report.html", "report.md")
+BESIDE = (
+    names.PROFILE,
+    names.CALM,
+    names.HISTORY,
+    names.MOTIONS,
+    names.REPORT_HTML,
+    names.REPORT_MARKDOWN,
+)
 """What lies beside them, and may be somebody's own where they are not."""
-
-FIGURES = "figures"
-
-CHECKPOINTS = "training-*.safetensors"
-"""What is left of a training that was stopped before it had a result."""
 
 
 _KEPT: ContextVar[list[Path] | None] = ContextVar("kept", default=None)
@@ -119,7 +119,7 @@ def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> 
     taken = folder.is_dir() and any(not is_left_over(one) for one in folder.iterdir())
     if taken and not (force or resume):
         raise OutputError(exists(folder))
-    own = any((folder / name).exists() for name in MARKS) or any(folder.glob(CHECKPOINTS))
+    own = any((folder / name).exists() for name in MARKS) or any(folder.glob(names.CHECKPOINTS))
     if taken and force and not own:
         raise OutputError(
             Problem(
@@ -135,8 +135,8 @@ def _left_before(folder: Path) -> dict[Path, tuple[int, int]]:
     """What runs before left in a folder: each file with what changes when it is written anew."""
     there = [
         *(folder / name for name in (*MARKS, *BESIDE)),
-        *folder.glob(f"{FIGURES}/*.svg"),
-        *folder.glob(CHECKPOINTS),
+        *folder.glob(f"{names.FIGURES}/*.svg"),
+        *folder.glob(names.CHECKPOINTS),
     ]
     return {path: (path.stat().st_ino, path.stat().st_mtime_ns) for path in there if path.is_file()}
 

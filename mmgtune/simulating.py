@@ -60,6 +60,8 @@ class Simulated(Plotted, Sequence[Motion]):
     bands    on indices of manoeuvres, as ``predicting.with_bands`` adds them: level [%], particles, and runs
     """
 
+    written_by = "write_simulation"
+
     predictor: Predictor
     motions: tuple[Motion, ...]
     records: tuple[TrialRecord, ...]

@@ -84,9 +84,11 @@ class Validation(Plotted):
 
     trials, sigma_from  what the trials, and those whose spread is counted in, were called
     sigma   what L_MSE divides differences of each state by [SI]
-    pieces  the trials, or windows of them, that were scored
+    pieces  the trials, or windows of them, that were scored; whole: the trials
     oddities  what is odd about the trials, in sentences
     """
+
+    written_by = "write_validation"
 
     profiles: tuple[Scored, ...]
     trials: str
@@ -95,6 +97,7 @@ class Validation(Plotted):
     options: ValidateOptions = field(default_factory=ValidateOptions)
     pieces: tuple[Trial, ...] = ()
     oddities: tuple[str, ...] = ()
+    whole: tuple[Trial, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
@@ -177,7 +180,8 @@ def validate(
         stated = _stated(predictor, data, options.backend)
         bands = bands_of(predictor, pieces, sigma, offsets) if pieces else {}
         scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands, offsets))
-    return Validation(tuple(scored), called, sigma, options.sigma_from or called, options, tuple(pieces), tuple(odd))
+    spread_of = options.sigma_from or called
+    return Validation(tuple(scored), called, sigma, spread_of, options, tuple(pieces), tuple(odd), tuple(whole))
 
 
 def _of_noise(predictor: Predictor, pieces: Sequence[Trial], scores: Sequence[TrialScore]) -> list[str]:

@@ -4,7 +4,7 @@ import functools
 
 import pytest
 
-from mmgtune import ValidateOptions, compare_profiles, load_profile, load_trials, validate
+from mmgtune import ValidateOptions, compare_profiles, load_profile, load_trials, validate, write_comparison
 from mmgtune.profile import tuned
 from mmgtune.report import render
 
@@ -48,14 +48,14 @@ def test_distance_counts_in_scatters_of_the_formula(tmp_path):
     (row,) = [row for row in found.data["coefficients"] if row["a"] != row["b"]]
     assert row["name"] == "hull.N_v"
     assert (row["a"] - row["b"]) / row["scatter"] == pytest.approx(2.0)
-    found.write(tmp_path)
+    write_comparison(found, tmp_path)
     text = (render(tmp_path)[1]).read_text()
     (line,) = [line for line in text.splitlines() if line.startswith(r"| hull.N\_v ")]
     assert line.endswith("| 2.0 |")
 
 
 def test_the_page_names_both_and_says_which_turns_wider(tmp_path):
-    known("suzaku", "suzaku_fam").write(tmp_path)
+    write_comparison(known("suzaku", "suzaku_fam"), tmp_path)
     html, markdown = (path.read_text() for path in render(tmp_path)[:2])
     assert "suzaku_fam turns 1.3 L_pp wider than suzaku" in html
     assert "wider to starboard" in markdown

@@ -420,7 +420,7 @@ def test_a_result_is_not_replaced_in_silence(tmp_path):
     baseline = mmgtune.record_baseline("suzaku", TRIALS["turn_p35"])
     predicted = mmgtune.predict("suzaku", options=mmgtune.PredictOptions(turn=("35",)))
     for write in (
-        lambda **how: result.write(tmp_path / "compare", **how),
+        lambda **how: mmgtune.write_comparison(result, tmp_path / "compare", **how),
         lambda **how: mmgtune.write_baseline(baseline, tmp_path / "check.json", **how),
         lambda **how: mmgtune.write_prediction(predicted, tmp_path / "predict", **how),
     ):

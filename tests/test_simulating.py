@@ -129,7 +129,8 @@ def test_a_comparison_with_a_ship_that_diverges_is_written(tmp_path):
     sections["hull"] = replace(hull, coefficients={**hull.coefficients, "X_vvvv": far})
     found = mmgtune.compare_profiles("suzaku", replace(wild, sections=sections))
     assert set(found.data["manoeuvres"]["motions"]["turn_p35"]) == {"a"}
-    assert "NaN" not in found.write(tmp_path).read_text()
+    assert mmgtune.write_comparison(found, tmp_path)["out"] == str(tmp_path)
+    assert "NaN" not in (tmp_path / "comparison.json").read_text()
     mmgtune.render(tmp_path)
 
 

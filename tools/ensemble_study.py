@@ -35,7 +35,7 @@ from mmgtune.networks import Ensemble, EnsemblePredictor, load_network
 from mmgtune.objective import spread
 from mmgtune.options import SAMPLINGS, EnsembleOptions
 from mmgtune.predictor import cases_from
-from mmgtune.run_folders import CHECKPOINTS
+from mmgtune.run_files import CHECKPOINTS
 from mmgtune.scores import window_scores
 from mmgtune.trial import TrialSet, load_trials
 

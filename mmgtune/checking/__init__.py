@@ -1,12 +1,11 @@
 """Regression of a profile on trials: its metrics against a committed baseline and its own limits."""
 
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
-from .folder import RESULT, write_check
+from .folder import write_check
 from .result import Changed, CheckReport, Item
 from .run import check, could_not_run, record_baseline, update_baseline
 
 __all__ = [
-    "RESULT",
     "Baseline",
     "Changed",
     "CheckReport",

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-from ..documents import write_json
 from ..provenance import made_by
+from ..run_files import CHECKED
+from ..writing_results import place_for, write_record
 from .result import CheckReport
 
-RESULT = "checked.json"
 
+def write_check(
+    result: CheckReport, folder: Path | str, command: str = "", *, overwrite: bool = False
+) -> dict[str, Any]:
+    """Write the record into a run folder.  Returns it.
 
-def write_check(report: CheckReport, folder: Path, command: str = "") -> None:
-    """Write the record into a folder that is there, in place of an older one.  Raises OutputError where it cannot."""
-    write_json({**report.to_dict(), **made_by(command), "out": str(folder)}, folder / RESULT)
+    Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
+    """
+    with place_for(result, CheckReport, folder, CHECKED, overwrite=overwrite) as place:
+        return write_record({**result.to_dict(), **made_by(command)}, place, CHECKED)

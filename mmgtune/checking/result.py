@@ -127,6 +127,8 @@ class CheckReport(Displayed):
     orders    what trials ordered, see ``simulation.orders_of``
     """
 
+    written_by = "write_check"
+
     profile: str
     trials: str
     baseline: str | None

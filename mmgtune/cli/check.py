@@ -266,7 +266,7 @@ class Given:
             from ..checking import write_check
             from ..report import render
 
-            write_check(report, self.out, c.command_line())
+            write_check(report, self.out, c.command_line(), overwrite=True)
             render(self.out)
         if self.junit is not None:
             write_text(self.junit, RENDERERS["junit"](report))

@@ -159,10 +159,10 @@ def _of_runs(one: ByRun) -> list[str]:
 
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """Plain-text summary of the result."""
-    from ..diagnose.folder import CALM
     from ..diagnose.signatures.retuned import in_words as in_words_of_retuned
     from ..profile.doubts import in_words
     from ..report.wording import span
+    from ..run_files import CALM
 
     rows = []
     for row in result.candidates[:12]:

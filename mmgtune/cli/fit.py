@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import FitOptions, in_flags
+from ..run_files import PROFILE
 from ..units import in_time
 from . import common as c
 from .exitcodes import ExitCode
@@ -100,7 +101,7 @@ def command(
         elif result.compared and not result.interrupted:
             for line in next_steps(result, profile, trials):
                 c.show(line)
-            tuned = quote(str(folder / "profile.toml"))
+            tuned = quote(str(folder / PROFILE))
             c.show(f"Bands: mmgtune posterior -p {tuned} -t {quote(trials)} --out {quote(str(folder))}")
     progress.leave()
     if strict and not result.converged:

@@ -69,7 +69,7 @@ def command(
       mmgtune learn mixture esso_osaka_3m_hybrid runs/type1 runs/type2 --share 0.35 --out runs/mixture
     """
     from ..comparing_models import write_model_comparison
-    from ..learning import compare_parts, learn_mixture
+    from ..learning import compare_parts, learn_mixture, write_learned
     from ..networks import named_ship
     from ..networks.naming import file_of
     from ..report import render
@@ -82,7 +82,7 @@ def command(
     folder = run.out or c.default_out(given)
     with claimed(folder, force=run.force, anew=True, reads=(model, *names)):
         result = learn_mixture(given, networks, trials, options, command=c.command_line())
-        document = result.write(folder, overwrite=True)
+        document = write_learned(result, folder, overwrite=True)
         if trials is not None and not no_report:
             compared = compare_parts(result, trials)
             write_model_comparison(compared, folder, c.command_line(), result.notes, overwrite=True)

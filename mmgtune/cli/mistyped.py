@@ -14,6 +14,7 @@ import typer
 
 from ..errors import Problem, among, near_to
 from ..phrases import small
+from ..run_files import PARTICLES
 from ..units import with_point
 
 Mistyped: type[Exception] = next(one for one in typer.BadParameter.__mro__ if one.__name__ == "UsageError")
@@ -107,9 +108,8 @@ def as_arguments(typed: list[str], ctx: Any) -> str:
 
 
 def _are_trials(word: str) -> bool:
-    from ..particles import FILE  # what it takes along is not needed for help
 
-    return Path(word).name != FILE and (word.endswith(".parquet") or Path(word).is_dir())
+    return Path(word).name != PARTICLES and (word.endswith(".parquet") or Path(word).is_dir())
 
 
 def _meant(name: str, ctx: Any) -> dict[str, str]:

@@ -235,13 +235,15 @@ def compare(
 
       mmgtune profile compare before.toml after.toml --out compared
     """
-    from ..comparing_profiles import compare_profiles
+    from ..comparing_profiles import compare_profiles, write_comparison
     from ..report import render
+    from ..run_files import COMPARISON
 
     with c.placed(out, force=force, anew=True, reads=(a, b)):
         found = compare_profiles(a, b)
         if out is not None:
-            c.say(f"wrote {found.write(out, overwrite=True)}")
+            write_comparison(found, out, overwrite=True)
+            c.say(f"wrote {out / COMPARISON}")
             for path in render(out):
                 c.say(f"wrote {path}")
     if json:

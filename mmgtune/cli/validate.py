@@ -60,7 +60,7 @@ def command(
     from ..recording import write_validation
     from ..report import render
     from ..run_folders import claimed, refuse_taken
-    from ..trial import holds_voyages, load_trials
+    from ..trial import holds_voyages
     from ..validating import validate
 
     if formerly is not None:
@@ -88,7 +88,7 @@ def command(
     result = validate(names[:-1], names[-1], ValidateOptions(**options.shared_with(ValidateOptions)))
     if run.out is not None:
         with claimed(run.out, force=run.force):
-            write_validation(result, load_trials(names[-1]), run.out, c.command_line(), overwrite=True)
+            write_validation(result, run.out, c.command_line(), overwrite=True)
             if not no_report:
                 render(run.out)
     if json:

@@ -8,6 +8,7 @@ from ..fitting.planning import Plan, can_be_tried, evaluation_seconds, whole
 from ..fitting.setting import in_pieces
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..options import DiagnoseOptions
+from ..run_files import DIAGNOSIS, DRAWN_UP, MOTIONS, PROFILE
 from ..trial import VoyageSet
 from .bench.hypotheses import known_causes
 from .bench.workbench import make_workbench
@@ -46,5 +47,5 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven | VoyageSet, options:
     each = evaluation_seconds(bench.problem)
     free = len(bench.tuned_alone) + 7
     low, high = (len(known) * n * free * each for n in EVALUATIONS)
-    files = ("diagnosis.json", "profile.toml", "motions.parquet", "report.html and .md", "figures")
+    files = (DIAGNOSIS, PROFILE, MOTIONS, *DRAWN_UP)
     return Plan(lines, (low, high), files, can_be_tried(bench.problem))

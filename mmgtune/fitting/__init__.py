@@ -3,7 +3,7 @@
 from ..hooks import Hooks
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
 from .comparison import ComparedTrials, TrialComparison
-from .folder import write_document, write_run
+from .folder import write_run
 from .information import Information
 from .informing import information_of
 from .leaving_out import BandsLeftOut, LeftOut, leave_out, write_left_out
@@ -12,7 +12,7 @@ from .pooled import CLASSES, FEWEST, SisterClass, pooled
 from .result import FitResult
 from .run import fit
 from .setting import in_pieces, make_problem
-from .sweeping import SweepResult, sweep
+from .sweeping import SweepResult, sweep, write_sweep
 
 __all__ = [
     "CLASSES",
@@ -41,7 +41,7 @@ __all__ = [
     "plan_sweep",
     "pooled",
     "sweep",
-    "write_document",
     "write_left_out",
     "write_run",
+    "write_sweep",
 ]

@@ -18,9 +18,9 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, brief, reason
 from ..files import atomic
+from ..run_files import CHECKPOINT
 from ..run_folders import RESULTS
 
-NAME = "checkpoint.npz"
 EVERY = 25
 """Generations between two checkpoints: about a second of work."""
 
@@ -39,7 +39,7 @@ class Checkpoint:
     @property
     def path(self) -> Path:
         """The file."""
-        return self.folder / NAME
+        return self.folder / CHECKPOINT
 
     def save(self, costs: list[FloatArray]) -> None:
         """Write the costs of all generations so far, whole or not at all."""

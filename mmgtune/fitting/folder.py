@@ -9,47 +9,30 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
-from ..documents import write_json
-from ..errors import must_be_a
-from ..files import (
-    all_or_none,
-    path_of,
-    refuse_existing,
-    write_text,
-)
+from ..files import write_text
 from ..parquet_tables import write_table
-from ..run_folders import MOTIONS
+from ..run_files import FIT, HISTORY, MOTIONS, PROFILE
+from ..writing_results import place_for, write_record
 from .cmaes import Generation
 from .comparison import TrialComparison
 from .journal import finished
 from .result import FitResult
 
-RESULT = "fit.json"
 
-
-@all_or_none()
 def write_run(result: FitResult, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document.
 
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, FitResult, "result")
-    refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
-    write_text(folder / "profile.toml", result.tuned_text())
-    write_table(folder / "history.parquet", _history(result.history))
-    inputs = [one.name for one in result.profile.arrangement.inputs]
-    write_table(folder / MOTIONS, motions_table(result.compared, inputs))
-    document = {**result.to_dict(), "out": str(folder)}
-    write_document(document, folder)
-    if not result.interrupted:
-        finished(folder)
-    return document
-
-
-def write_document(document: dict[str, Any], folder: Path) -> None:
-    """Write the document of a fit, again where something is added to it."""
-    write_json(document, folder / RESULT)
+    with place_for(result, FitResult, folder, FIT, MOTIONS, overwrite=overwrite) as place:
+        write_text(place / PROFILE, result.tuned_text())
+        write_table(place / HISTORY, _history(result.history))
+        inputs = [one.name for one in result.profile.arrangement.inputs]
+        write_table(place / MOTIONS, motions_table(result.compared, inputs))
+        document = write_record(result.to_dict(), place, FIT)
+        if not result.interrupted:
+            finished(place)
+        return document
 
 
 def _history(history: Iterable[Generation]) -> dict[str, Any]:

@@ -25,11 +25,10 @@ import numpy as np
 
 from ..errors import MmgtuneError, OptionError, OutputError, Problem
 from ..files import cannot_write, write_text
+from ..run_files import CHECKPOINT, JOURNAL
 from ..run_folders import remove_kept
-from .checkpoint import NAME as CHECKPOINT
 from .checkpoint import differing, nothing_to_resume
 
-NAME = "journal.jsonl"
 SCHEMA = 2
 
 P = ParamSpec("P")
@@ -44,7 +43,7 @@ class Journal:
     """
 
     def __init__(
-        self, folder: Path, identity: dict[str, Any], stop: Callable[[], bool] = lambda: False, name: str = NAME
+        self, folder: Path, identity: dict[str, Any], stop: Callable[[], bool] = lambda: False, name: str = JOURNAL
     ):
         self.path = folder / name
         self.identity = identity
@@ -76,7 +75,7 @@ class Journal:
 
     def _lines(self) -> list[str]:
         if not self.path.is_file():
-            if self.path.name == NAME:
+            if self.path.name == JOURNAL:
                 raise nothing_to_resume(self.path.parent, "journal")
             raise nothing_to_resume(self.path.parent, self.path.name, "the run never began, or has ended", results=())
         return self.path.read_text(encoding="utf-8", errors="replace").splitlines()
@@ -131,7 +130,7 @@ class Journal:
 
     @property
     def _beside(self) -> tuple[Path, ...]:
-        return (self.path.parent / CHECKPOINT,) if self.path.name == NAME else ()
+        return (self.path.parent / CHECKPOINT,) if self.path.name == JOURNAL else ()
 
     def close(self) -> None:
         """Let go of the file."""
@@ -145,7 +144,7 @@ _ACTIVE: ContextVar[Journal | None] = ContextVar("journal", default=None)
 
 @contextmanager
 def journalled(
-    folder: Path | None, identity: dict[str, Any], stop: Callable[[], bool], *, resume: bool, name: str = NAME
+    folder: Path | None, identity: dict[str, Any], stop: Callable[[], bool], *, resume: bool, name: str = JOURNAL
 ) -> Iterator[None]:
     """What is searched for within this context is noted in the folder; part of a longer run is noted in its journal.
 
@@ -175,7 +174,7 @@ def journalled(
 def finished(folder: Path, *names: str) -> None:
     """Delete what a run in this folder would be continued from, or the journals of those names: its result is
     written.  A command does so when its report is written too."""
-    remove_kept(folder / name for name in names or (CHECKPOINT, NAME))
+    remove_kept(folder / name for name in names or (CHECKPOINT, JOURNAL))
 
 
 class Counts(Protocol):

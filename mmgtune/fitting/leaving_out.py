@@ -14,10 +14,10 @@ from ..arrays import FloatArray
 from ..bands import Pooled
 from ..circumstances import notes_on
 from ..displayed import Displayed
-from ..documents import finite, finite_values, write_json
+from ..documents import finite, finite_values
 from ..errors import OptionError, Problem, must_be_a
 from ..evaluation import TrialRecord, evaluate
-from ..files import all_or_none, kept_in, path_of, refuse_existing
+from ..files import kept_in
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..inputs import INPUTS
@@ -32,11 +32,12 @@ from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repetitions
-from ..run_folders import MOTIONS
+from ..run_files import LEFT_OUT, MOTIONS
 from ..scores import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, another_ship, oddities
+from ..writing_results import place_for, write_record
 from .amounts import telling
 from .comparison import ComparedTrials, TrialComparison
 from .extending import held_words, settled, tune_trials
@@ -50,8 +51,6 @@ from .robust import weigh_down
 from .run import fixed_where_undetermined
 from .setting import in_pieces, make_problem
 from .weighing import Weight, weigh
-
-RESULT = "leave_out.json"
 
 LEAST_FALL = 1e-4
 """Fall of J, as a share, that counts as none: scores of runs left out do not show it."""
@@ -265,21 +264,17 @@ def leave_out(
         return _leave_out(profile, trials, options, hooks, provenance)
 
 
-@all_or_none()
 def write_left_out(result: LeftOut, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write the result, and the motions of the trials left out.  Returns its document.
 
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, LeftOut, "result")
-    refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
-    write_table(folder / MOTIONS, motions_table(result.compared, result.inputs))
-    document = {**result.to_dict(), "out": str(folder)}
-    write_json(document, folder / RESULT)
-    if not result.interrupted:
-        finished(folder)
-    return document
+    with place_for(result, LeftOut, folder, LEFT_OUT, MOTIONS, overwrite=overwrite) as place:
+        write_table(place / MOTIONS, motions_table(result.compared, result.inputs))
+        document = write_record(result.to_dict(), place, LEFT_OUT)
+        if not result.interrupted:
+            finished(place)
+        return document
 
 
 def _leave_out(

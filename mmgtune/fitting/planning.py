@@ -13,6 +13,7 @@ from ..backends.compiled import cores
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import FitOptions, LeaveOutOptions, SweepOptions
 from ..profile import ShipProfile
+from ..run_files import DRAWN_UP, FIT, HISTORY, LEFT_OUT, MOTIONS, PROFILE, SWEEP
 from ..trial import TrialSet
 from ..units import in_time
 from .amounts import of_iteration
@@ -29,8 +30,8 @@ GENERATIONS = (150, 600)
 ITERATIONS = (15, 60)
 """Iterations of least squares from one start, from few to many; each is a Jacobian and some trials."""
 
-FIT_FILES = ("fit.json", "profile.toml", "history.parquet", "motions.parquet", "report.html and .md", "figures")
-LEFT_OUT_FILES = ("leave_out.json", "motions.parquet", *FIT_FILES[4:])
+FIT_FILES = (FIT, PROFILE, HISTORY, MOTIONS, *DRAWN_UP)
+LEFT_OUT_FILES = (LEFT_OUT, MOTIONS, *DRAWN_UP)
 
 
 TRIED = 8 * WIDTH
@@ -94,7 +95,7 @@ def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -
     one = plan_fit(profile, pieces, options.at(widths[0]))
     low, high = fit_seconds(problems[0], options.at(widths[0]))
     lines = (f"sweep     over a_r = {', '.join(f'{a_r:g}' for a_r in widths)}; the first:", *one.lines)
-    files = ("sweep.json", "a folder for each a_r", *FIT_FILES[4:])
+    files = (SWEEP, "a folder for each a_r", *DRAWN_UP)
     return Plan(lines, (len(widths) * low, len(widths) * high), files, one.tried)
 
 

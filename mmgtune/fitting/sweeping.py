@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..displayed import Plotted
-from ..documents import finite_values, write_json
+from ..documents import finite_values
 from ..errors import must_be_a
 from ..files import kept_in
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -19,7 +19,9 @@ from ..made_from import identity_of, make_provenance
 from ..options import SweepOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
+from ..run_files import SWEEP
 from ..trial import TrialSet
+from ..writing_results import place_for, write_record
 from .box import A_R
 from .comparison import TrialComparison, compare, counted_trials, mean_off, off_document, off_in_words
 from .extending import settled
@@ -33,8 +35,6 @@ from .robust import weigh_down
 from .run import fit
 from .setting import in_pieces, make_problem, make_setting
 
-RESULT = "sweep.json"
-
 
 @dataclass(frozen=True, eq=False)
 class SweepResult(Plotted):
@@ -43,6 +43,8 @@ class SweepResult(Plotted):
     leave_one_out  J over trials left out one at a time, per a_r; None where there are test trials to judge by
     left_out       these trials against what was fitted without them, per a_r
     """
+
+    written_by = "write_sweep"
 
     runs: tuple[FitResult, ...]
     leave_one_out: tuple[float, ...] | None
@@ -264,10 +266,28 @@ def sweep(
     with journalled(folder, identity, hooks.stop, resume=resume):
         swept = _sweep(profile, trials, options, hooks, folder, resume, command)
     if folder is not None:
-        write_json({**swept.to_dict(), "out": str(folder)}, folder / RESULT)
-        if not swept.interrupted:
-            finished(folder)
+        _write_table(swept, folder)
     return swept
+
+
+def write_sweep(result: SweepResult, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
+    """Write a sweep, and each of its fits into a folder of its own inside: ``ar_0.3``.  Returns the document.
+
+    A sweep that was given a folder has written itself there already.
+    Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
+    """
+    with place_for(result, SweepResult, folder, SWEEP, overwrite=overwrite) as place:
+        for a_r, run in zip(result.widths, result.runs, strict=True):
+            write_run(run, place / folder_name(a_r), overwrite=overwrite)
+        return _write_table(result, place)
+
+
+def _write_table(result: SweepResult, place: Path) -> dict[str, Any]:
+    """Write the document of a sweep whose fits are written.  Returns it."""
+    document = write_record(result.to_dict(), place, SWEEP)
+    if not result.interrupted:
+        finished(place)
+    return document
 
 
 def _sweep(

@@ -12,12 +12,10 @@ from ..errors import OptionError, Problem
 from ..how_far_off import mean, mean_off_heading, mean_off_track, rms_errors
 from ..options import CheckOptions, DiagnoseOptions, FitOptions, Options, SweepOptions, ValidateOptions
 from ..phrases import counted
+from ..run_files import CHECKED, DIAGNOSIS, FIT, INFORMATION, SWEEP, VALIDATION, VOYAGES
 
 if TYPE_CHECKING:
     from ..profile import ShipProfile
-
-INFORMATION = "information.json"
-"""File of a fit's folder with what its trials say of the coefficients: what sister ships are pooled by."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ def _fit(task: Task, folder: Path) -> tuple[str, Facts]:
     told = information_of(result, trials)
     if told is not None:
         write_text(folder / INFORMATION, json.dumps(told.to_dict(), allow_nan=False) + "\n")
-    return "fit.json", _of_fit(document, document["verdict"], "no" if document["misses"] else "good")
+    return FIT, _of_fit(document, document["verdict"], "no" if document["misses"] else "good")
 
 
 def _of_fit(document: Mapping[str, Any], verdict: str, answer: str) -> Facts:
@@ -135,12 +133,12 @@ def _sweep(task: Task, folder: Path) -> tuple[str, Facts]:
     result = sweep(task.ship, load_trials(task.trials), task.options, folder=folder, command=task.label)
     found, recommended = result.to_dict(), result.recommended()
     width = recommended["a_r"]
-    best = None if width is None else folder / folder_name(width) / "fit.json"
+    best = None if width is None else folder / folder_name(width) / FIT
     if best is None or not best.is_file():
-        return "sweep.json", Facts("good", recommended["sentence"])
+        return SWEEP, Facts("good", recommended["sentence"])
     document = json.loads(best.read_text(encoding="utf-8"))
     answer = "no" if found["overfitting"].get("found") else "good"
-    return "sweep.json", _of_fit(document, recommended["sentence"], answer)
+    return SWEEP, _of_fit(document, recommended["sentence"], answer)
 
 
 def _seconds_of_sweep(task: Task) -> tuple[float, float]:
@@ -162,7 +160,7 @@ def _diagnose(task: Task, folder: Path) -> tuple[str, Facts]:
     result = diagnose(task.ship, _trials_or_voyages(task.trials), task.options, folder=folder, command=task.label)
     document = write_diagnosis(result, folder, overwrite=True)
     errors = _errors(document["trial_results"])
-    return "diagnosis.json", Facts(
+    return DIAGNOSIS, Facts(
         "good" if result.verdict == "none" else "no",
         document["sentence"],
         **errors,
@@ -190,15 +188,15 @@ def _validate(task: Task, folder: Path) -> tuple[str, Facts]:
         options = VoyageOptions(**task.options.shared_with(ValidateOptions))
         result = validate_voyages([task.ship], load_voyages(task.trials), options, folder=folder, command=task.label)
         written = write_voyages(result, folder, overwrite=True)
-        return "voyages.json", Facts("good", written["verdict"])
+        return VOYAGES, Facts("good", written["verdict"])
     data = load_trials(task.trials)
-    document = write_validation(validate([task.ship], data, task.options), data, folder, task.label, overwrite=True)
+    document = write_validation(validate([task.ship], data, task.options), folder, task.label, overwrite=True)
     (scored,) = document["profiles"]
     errors = [rms_errors(document, row) for row in scored["trials"]]
     track, heading = ([one[k] for one in errors if one[k] is not None] for k in (0, 1))
     lost = sum(one[0] is None for one in errors)
     words = f"J {scored['J']:.4g} over {counted(len(errors), 'trial')}" if scored["J"] is not None else "no finite J"
-    return "validate.json", Facts(
+    return VALIDATION, Facts(
         "no" if lost else "good",
         f"{words}; {lost} diverged" if lost else words,
         off_track=mean(track),
@@ -218,14 +216,14 @@ def _check(task: Task, folder: Path) -> tuple[str, Facts]:
     integrator = task.options.asked_integrator(recorded.method)
     data = load_trials(task.trials)
     report = checking.check(task.ship, data, recorded, names=names, integrator=integrator, **how)
-    checking.write_check(report, folder, task.label)
+    checking.write_check(report, folder, task.label, overwrite=True)
     if report.verdict == "not comparable":
         lost = [item.reason for item in report.items if item.status == "not comparable" and item.reason]
         why = "; ".join(dict.fromkeys(lost))
         raise OptionError(Problem("the check could not compare", str(task.baseline), why, "write the baseline anew"))
     answer = "good" if report.verdict == "pass" else "no"
     sources = {name: trial.source for name, trial in data.trials.items()}
-    return checking.RESULT, Facts(answer, report.sentence(), generated=_generated(sources))
+    return CHECKED, Facts(answer, report.sentence(), generated=_generated(sources))
 
 
 COMMANDS: Mapping[str, Command] = {

@@ -12,7 +12,7 @@ from ..documents import parsed
 from ..errors import OptionError, Problem, reason
 from ..files import write_text
 from ..fitting import CLASSES, FEWEST, Information, SisterClass
-from .commands import INFORMATION
+from ..run_files import INFORMATION
 
 
 def classes_of(out: Path, rows: Sequence[Mapping[str, Any]]) -> list[SisterClass]:

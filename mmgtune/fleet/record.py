@@ -11,13 +11,12 @@ from .. import limits
 from ..documents import parsed, write_json
 from ..errors import OptionError, Problem, reason
 from ..phrases import capital
+from ..run_files import FLEET, JOBS, REPORT_HTML
 from . import rows as result_rows
 from .changes import FEWEST, LEVEL, SURE, Course
 from .pooling import classes_of, write_classes
 from .series import Series, courses, series_of
 
-RECORD = "fleet.json"
-JOBS = "jobs.json"
 SCHEMA = 1
 
 CELL = (
@@ -51,13 +50,13 @@ def write_record(out: Path, made: Mapping[str, Any]) -> dict[str, Any]:
         "ranking": _ranking(rows),
         "classes": [{"name": one["name"], **(one["pooled"] or {})} for one in classes],
     }
-    write_json(document, out / RECORD)
+    write_json(document, out / FLEET)
     return document
 
 
 def made_before(out: Path) -> dict[str, Any]:
     """What an earlier record says of how the fleet was made.  Raises OptionError where there is none."""
-    path = out / RECORD
+    path = out / FLEET
     try:
         document = parsed(limits.text(path, limits.RECORD_BYTES, OptionError))
         if not isinstance(document, dict):
@@ -106,7 +105,7 @@ def _cell(out: Path, row: Mapping[str, Any]) -> dict[str, Any]:
     return {
         **{key: row[key] for key in CELL},
         "run": run,
-        "report": bool(run) and (out / run / "report.html").is_file(),
+        "report": bool(run) and (out / run / REPORT_HTML).is_file(),
     }
 
 

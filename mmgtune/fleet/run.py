@@ -17,12 +17,13 @@ from ..options import FleetOptions
 from ..options.choice import must_be
 from ..provenance import made_by
 from ..resources import must_be_name
+from ..run_files import FLEET, JOBS
 from . import rows
 from .expanding import expand
 from .job import Job
 from .processes import Ran, cores, prepare, run_here
 from .reckoning import Reckoned, reckon
-from .record import JOBS, RECORD, listed_places, made_before, write_record
+from .record import listed_places, made_before, write_record
 from .table import FleetTable, read_table
 from .work import remove_attempts
 
@@ -130,8 +131,8 @@ def _prepare(out: Path, resume: bool, jobs: Sequence[Job]) -> None:
         problem = exists(out)
         fix = "add resume=True to run what is not done there yet, or choose another folder"
         raise OutputError(Problem(problem.what, problem.where, problem.why, fix))
-    if any(out.iterdir()) and not (out / JOBS).is_file() and not (out / RECORD).is_file():
-        why = f"it has files, and neither {JOBS} nor {RECORD} is among them"
+    if any(out.iterdir()) and not (out / JOBS).is_file() and not (out / FLEET).is_file():
+        why = f"it has files, and neither {JOBS} nor {FLEET} is among them"
         raise OutputError(Problem("the folder is not that of a fleet", str(out), why, "choose another folder"))
     held = listed_places(out)
     if held and not held & {job.place for job in jobs}:
@@ -210,5 +211,5 @@ def check_out(out: Path) -> None:
 
 def record_anew(out: Path) -> dict[str, Any]:
     """The record of a fleet's results written again, of a run that was stopped or goes on too."""
-    made = made_before(out) if (out / RECORD).is_file() else {**made_by(""), "table": ""}
+    made = made_before(out) if (out / FLEET).is_file() else {**made_by(""), "table": ""}
     return write_record(out.absolute(), made)

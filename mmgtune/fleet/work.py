@@ -19,13 +19,13 @@ from typing import Any
 from ..documents import write_json
 from ..errors import MmgtuneError, OptionError, Problem, TrialError, cannot_write_reason
 from ..files import write_text
+from ..run_files import JOB
 from . import rows
 from .commands import COMMANDS, Facts, Task
 from .job import Job, Source
 from .places import fetched, hashes
 from .table import options_of
 
-DOCUMENT = "job.json"
 ATTEMPT = ".attempt-"
 """Begin of the names of folders in which jobs are at work."""
 
@@ -84,7 +84,7 @@ def attempted(job: Job, out: Path, report: bool = True) -> tuple[str, Facts]:
 
             render(here)
         _says(here / record, str(final))
-        write_json(job.to_dict(), here / DOCUMENT)
+        write_json(job.to_dict(), here / JOB)
         _replace(here, final)
     finally:
         shutil.rmtree(here, ignore_errors=True)
@@ -133,7 +133,7 @@ def _replace(here: Path, final: Path) -> None:
             shutil.rmtree(older, ignore_errors=True)
         os.rename(here, final)
     except OSError as error:
-        if not (final / DOCUMENT).is_file():  # else another attempt at the same job was quicker: it is the same
+        if not (final / JOB).is_file():  # else another attempt at the same job was quicker: it is the same
             raise OptionError(Problem(cannot_write_reason(error), str(final), fix="look at the folder")) from error
 
 

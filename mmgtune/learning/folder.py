@@ -8,35 +8,27 @@ from pathlib import Path
 from typing import Any
 
 from ..arrays import FloatArray
-from ..documents import finite_values, write_json
-from ..errors import must_be_a
-from ..files import all_or_none, path_of, refuse_existing
+from ..documents import finite_values
 from ..motions import simulate_trials
 from ..networks import (
-    Ensemble,
     EnsemblePredictor,
-    Hybrid,
     HybridPredictor,
-    Network,
     NetworkPredictor,
     save_network,
 )
 from ..objective import spread
 from ..predictor import Predictor, as_predictor
-from ..resources import MODEL
-from ..run_folders import CHECKPOINTS, remove_kept
+from ..run_files import CHECKPOINTS, ENSEMBLE, HYBRID, LEARNING, MIXTURE, MODEL
+from ..run_folders import remove_kept
 from ..scores import score, summary
 from ..trial import Trial
+from ..writing_results import place_for, write_record
 from .choosing import pieces_of
 from .ensemble_run import LearnedEnsemble
 from .hybrid_run import LearnedHybrid
 from .mixing import LearnedMixture
 from .reading import read_network
 from .run import Learned
-
-RESULT = "learning.json"
-HYBRID_RESULT = "hybrid.json"
-ENSEMBLE_RESULT = "ensemble.json"
 
 POINTS = 200
 """Points of a drawn motion, about."""
@@ -197,7 +189,6 @@ def _short(value: float, name: str) -> float:
     return round(value, 2) if name in POSITIONS else float(f"{value:.5g}")
 
 
-@all_or_none()
 def write_learned(
     result: Learned | LearnedHybrid | LearnedEnsemble | LearnedMixture, folder: Path | str, *, overwrite: bool = False
 ) -> dict[str, Any]:
@@ -205,21 +196,28 @@ def write_learned(
 
     Raises OutputError where a record is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, (Learned, LearnedHybrid, LearnedEnsemble, LearnedMixture), "result")
-    if isinstance(result, LearnedMixture):
-        return result.write(folder, overwrite=overwrite)
-    network: Network | Hybrid | Ensemble
-    if isinstance(result, LearnedHybrid):
-        network, document, name = result.hybrid, hybrid_document(result), HYBRID_RESULT
-    elif isinstance(result, LearnedEnsemble):
-        network, document, name = result.ensemble, ensemble_document(result), ENSEMBLE_RESULT
-    else:
-        network, document, name = result.network, document_of(result), RESULT
-    refuse_existing([folder / name, folder / MODEL], overwrite)
-    save_network(network, folder / MODEL, overwrite=True)
-    document["out"] = str(folder)
-    write_json(document, folder / name)
-    if not result.interrupted:
-        remove_kept(folder.glob(CHECKPOINTS))
-    return document
+    kinds = (Learned, LearnedHybrid, LearnedEnsemble, LearnedMixture)
+    name = next((file for kind, file in NAMES.items() if isinstance(result, kind)), LEARNING)
+    with place_for(result, kinds, folder, name, MODEL, overwrite=overwrite) as place:
+        save_network(result.as_ship(), place / MODEL, overwrite=True)
+        record = write_record(_document(result), place, name)
+        if not isinstance(result, LearnedMixture) and not result.interrupted:
+            remove_kept(place.glob(CHECKPOINTS))
+        return record
+
+
+NAMES: dict[type, str] = {LearnedHybrid: HYBRID, LearnedEnsemble: ENSEMBLE, LearnedMixture: MIXTURE}
+"""Records of what was learned, of others ``LEARNING``."""
+
+
+def _document(result: Learned | LearnedHybrid | LearnedEnsemble | LearnedMixture) -> dict[str, Any]:
+    """The record of what was learned, for JSON."""
+    match result:
+        case LearnedHybrid():
+            return hybrid_document(result)
+        case LearnedEnsemble():
+            return ensemble_document(result)
+        case LearnedMixture():
+            return result.to_dict()
+        case _:
+            return document_of(result)

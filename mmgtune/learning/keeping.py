@@ -17,7 +17,7 @@ from ..backends.twins import jax_module
 from ..errors import OptionError, Problem, reason
 from ..files import atomic, hold_regular
 from ..fitting.checkpoint import differing, nothing_to_resume
-from ..run_folders import CHECKPOINTS
+from ..run_files import CHECKPOINTS
 from .training import Progressed
 
 AnyArray = npt.NDArray[Any]

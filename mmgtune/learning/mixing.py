@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 from .. import limits
 from ..comparing_models import ModelComparison, compare_models
-from ..documents import finite, write_json
+from ..documents import finite
 from ..errors import OptionError, Problem, brief, kind_of, must_be_a, reason
-from ..files import all_or_none, path_of, refuse_existing
 from ..given import TrialsGiven, trials_of
 from ..networks import (
     HybridPredictor,
@@ -21,7 +20,6 @@ from ..networks import (
     Network,
     NetworkPredictor,
     named_ship,
-    save_network,
 )
 from ..networks.ensemble import EnsemblePredictor
 from ..networks.hybrid import Hybrid, silent
@@ -33,13 +31,10 @@ from ..predictor import Predictor
 from ..profile import ShipProfile
 from ..profile.changing import joined
 from ..provenance import made_by
-from ..resources import MODEL
 from ..scores import L_MSE, by_manoeuvre, score
 from ..trial import Trial, TrialSet
 from ..validating import Scorable
 from .choosing import pieces_of
-
-RESULT = "mixture.json"
 
 NetworkGiven = Network | Predictor | str | Path
 
@@ -125,19 +120,6 @@ class LearnedMixture:
             "options": self.options.to_dict(),
             "provenance": self.provenance,
         }
-
-    @all_or_none()
-    def write(self, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
-        """Write the model and the record into a run folder.  Returns the record.
-
-        Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
-        """
-        folder = path_of(folder)
-        refuse_existing([folder / RESULT, folder / MODEL], overwrite)
-        document = {**self.to_dict(), "out": str(folder)}
-        save_network(self.model, folder / MODEL, overwrite=True)
-        write_json(document, folder / RESULT)
-        return document
 
 
 def learn_mixture(

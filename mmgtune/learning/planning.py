@@ -9,6 +9,7 @@ from ..fitting import Plan
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions
 from ..phrases import counted
+from ..run_files import ENSEMBLE, HYBRID, LEARNING, MODEL, REPORT_HTML
 from ..trial import Trial
 from .hybrid_run import splits_of, times_of
 from .refitting import tuned_names
@@ -26,7 +27,7 @@ LANE_STEP = 5e-7, 2e-6
 FIT = 10.0
 """Seconds that a profile takes to be tuned anew, about."""
 
-WRITES = ("learning.json", "model.safetensors", "report.html", "training-SEED.safetensors until it is complete")
+WRITES = (LEARNING, MODEL, REPORT_HTML, "training-SEED.safetensors until it is complete")
 
 
 def plan_rnn(ship: ShipGiven, trials: TrialsGiven, options: LearnOptions) -> Plan:
@@ -72,7 +73,7 @@ def plan_ensemble(ship: ShipGiven, trials: TrialsGiven, options: EnsembleOptions
         f"train     {options.steps} updates by {options.batch} windows, {min(cores(), options.members)} side by side",
     )
     low, high = (operations / rate / min(cores(), options.members) for rate in (ALONE[1], ALONE[0]))
-    return Plan(lines, (low, high), ("ensemble.json", *WRITES[1:3], "training-MEMBER.safetensors until it is complete"))
+    return Plan(lines, (low, high), (ENSEMBLE, *WRITES[1:3], "training-MEMBER.safetensors until it is complete"))
 
 
 def plan_hybrid(ship: ShipGiven, trials: TrialsGiven, options: HybridOptions) -> Plan:
@@ -94,7 +95,7 @@ def plan_hybrid(ship: ShipGiven, trials: TrialsGiven, options: HybridOptions) ->
         f"test      {counted(len(data.test), 'trial')}",
     )
     low, high = (lane_steps * seconds + FIT * len(splits) * bool(names) for seconds in LANE_STEP)
-    return Plan(lines, (low, high), ("hybrid.json", *WRITES[1:]))
+    return Plan(lines, (low, high), (HYBRID, *WRITES[1:]))
 
 
 def _material(task: Material, horizon: int) -> tuple[str, ...]:

@@ -14,7 +14,8 @@ from ..documents import parsed
 from ..errors import NetworkError, Problem, brief, must_be_a, reason
 from ..files import atomic, hold_regular, path_of
 from ..profile import parse_profile
-from ..resources import MODEL, folder, in_run, looked_for, must_be_name, network_names, taken
+from ..resources import folder, in_run, looked_for, must_be_name, network_names, taken
+from ..run_files import MODEL
 from .ensemble import Ensemble, Part
 from .feedforward import Layers, Standards
 from .hybrid import Hybrid

@@ -9,10 +9,11 @@ from typing import TypeVar, cast
 from ..backends import Integrator
 from ..errors import ProfileError
 from ..given import Found, ship_of
-from ..particles import FILE, ParticlePredictor, Particles, load_particles
+from ..particles import ParticlePredictor, Particles, load_particles
 from ..predictor import PhysicsPredictor, Predictor
 from ..profile import ShipProfile
-from ..resources import MODEL, folder, in_run, must_be_name, taken
+from ..resources import folder, in_run, must_be_name, taken
+from ..run_files import MODEL, PARTICLES
 from .ensemble import Ensemble, EnsemblePredictor
 from .file import SUFFIX, Trained, content_of, load_network
 from .hybrid import Hybrid, HybridPredictor
@@ -43,7 +44,7 @@ def named_ship(
     path = file_of(given)
     if path is None:
         return ship_of(given)
-    if path.suffix == Path(FILE).suffix:
+    if path.suffix == Path(PARTICLES).suffix:
         return load_particles(path).predictor(integrator)
     return predictor_of(load_network(path), integrator)
 
@@ -51,10 +52,10 @@ def named_ship(
 def file_of(given: str | Path) -> Path | None:
     """The file of particles or of a trained model of that path or bundled name; None where no such is meant."""
     must_be_name(given, "ship", ProfileError)
-    inside = in_run(given, FILE) or in_run(given, MODEL)
+    inside = in_run(given, PARTICLES) or in_run(given, MODEL)
     if inside is not None:
         return inside
-    if str(given).endswith(Path(FILE).suffix):
+    if str(given).endswith(Path(PARTICLES).suffix):
         return Path(given)
     bundled = folder("ship_profiles") / f"{given}{SUFFIX}"
     return taken(given, str(given).endswith(SUFFIX), bundled)

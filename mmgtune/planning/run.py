@@ -15,9 +15,7 @@ from ..arrays import FloatArray
 from ..backends import get_backend
 from ..bands import IndexBand, index_band
 from ..displayed import Displayed
-from ..documents import write_json
-from ..errors import OptionError, Problem, ProfileError, kind_of, must_be_a
-from ..files import path_of, refuse_existing
+from ..errors import OptionError, Problem, ProfileError, kind_of
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
 from ..options.choice import must_be
@@ -26,12 +24,12 @@ from ..posterior.local import least_noise
 from ..posterior.room import room_of
 from ..predicting.asked import Approach, approach_of
 from ..provenance import made_by
+from ..run_files import PLAN
 from ..threads import blas_on_one_thread
+from ..writing_results import place_for, write_record
 from .candidates import candidates, logs
 from .expected import POINTS, answers, gradient, share_left, slopes_of
 from .question import Question, read_question
-
-RESULT = "plan.json"
 
 MOSTLY = 0.5
 """Share of the variance of an answer that its mean slopes must account for, else there is a note."""
@@ -202,12 +200,8 @@ def write_plan(result: TrialPlan, folder: Path | str, command: str = "", *, over
 
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, TrialPlan, "result")
-    refuse_existing([folder / RESULT], overwrite)
-    document = {**result.to_dict(command), "out": str(folder)}
-    write_json(document, folder / RESULT)
-    return document
+    with place_for(result, TrialPlan, folder, PLAN, overwrite=overwrite) as place:
+        return write_record(result.to_dict(command), place, PLAN)
 
 
 def _particles(model: str | Path | Particles) -> Particles:

@@ -25,15 +25,13 @@ from ..options.choice import must_be
 from ..particles import SO_FAR, Particles
 from ..phrases import capital, counted
 from ..profile import ShipProfile, tuned
+from ..run_files import POSTERIOR_JOURNAL
 from ..threads import blas_on_one_thread
 from ..trial import Trial, another_ship
 from ..trial.by_hand import ship_of_all
 from .local import Mode, Windowed, find_mode, make_windowed, particles_about
 from .room import Room, make_room, tags_of
 from .sizing import Shown, Sized, own_variance, shown_by, size
-
-JOURNAL = "posterior.journal.jsonl"
-"""Of a name of its own: particles may lie beside the fit they are about."""
 
 EXPECTED = 4.0
 """Squares of residuals of particles over what a linear model has, up to which bands of generated ships held."""
@@ -170,7 +168,7 @@ def posterior(
     provenance = make_provenance(ship, data, command)
     identity = identity_of(ship, data, options, provenance)
     kept = kept_in(folder, resume)
-    with journalled(kept, identity, hooks.stop, resume=resume, name=JOURNAL):
+    with journalled(kept, identity, hooks.stop, resume=resume, name=POSTERIOR_JOURNAL):
         return _drawn(ship, [data.trials[name] for name in data.tune], options, hooks, provenance, data.ship)
 
 

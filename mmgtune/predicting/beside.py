@@ -7,17 +7,16 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import OptionError, must_be_a
-from ..files import all_or_none, path_of, refuse_existing
-from ..fitting import FitResult, write_document, write_run
+from ..fitting import FitResult, write_run
 from ..given import TrialsGiven
 from ..hooks import Hooks
 from ..options import PredictOptions
-from ..particles import FILE
 from ..phrases import counted
 from ..posterior import Posterior, posterior, write_posterior
-from ..posterior.folder import RESULT
 from ..predictor import Uncertain
+from ..run_files import FIT, PARTICLES, POSTERIOR
 from ..simulating import Simulated, turns_of
+from ..writing_results import place_for, write_record
 from .result import Predicted
 from .run import predict
 
@@ -83,21 +82,16 @@ def fit_bands(result: FitResult, trials: TrialsGiven, *, hooks: Hooks = Hooks(),
     return FitBands(result, drawn, found, tuple(notes))
 
 
-@all_or_none()
 def write_fit_bands(result: FitBands, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write the run folder of a fit with its bands: the particles, their record, and ``bands`` of the result.
 
     Returns the document of the fit.  Raises OutputError where a result is there already and ``overwrite`` is false, or
     the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, FitBands, "result")
-    refuse_existing([folder / FILE, folder / RESULT], overwrite)
-    document = write_run(result.fit, folder, overwrite=overwrite)
-    made = write_posterior(result.posterior, folder, overwrite=overwrite)
-    document["bands"] = {**made, **result.to_dict()}
-    write_document(document, folder)
-    return document
+    with place_for(result, FitBands, folder, PARTICLES, POSTERIOR, overwrite=overwrite) as place:
+        document = write_run(result.fit, place, overwrite=overwrite)
+        made = write_posterior(result.posterior, place, overwrite=overwrite)
+        return write_record({**document, "bands": {**made, **result.to_dict()}}, place, FIT)
 
 
 def _predicted(ship: Uncertain, options: PredictOptions) -> tuple[Predicted | None, list[str]]:

@@ -8,23 +8,17 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
-from ..documents import write_json
-from ..errors import must_be_a
-from ..files import all_or_none, path_of, refuse_existing
 from ..parquet_tables import write_table
+from ..run_files import BANDS, PATHS, PREDICTION, TRACKS
+from ..writing_results import place_for, write_record
 from .result import Predicted
 
-RESULT = "predict.json"
-BANDS = "bands.parquet"
-TRACKS = "tracks.parquet"
 FAN = ("mean", "low", "q25", "median", "q75", "high")
-PATHS = "paths.parquet"
 
 DRAWN, POINTS = 40, 150
 """Particles whose tracks are kept to be drawn, and places of each."""
 
 
-@all_or_none()
 def write_prediction(
     result: Predicted,
     folder: Path | str,
@@ -38,16 +32,12 @@ def write_prediction(
     Returns the record.  Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses
     to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, Predicted, "result")
-    refuse_existing([folder / RESULT], overwrite)
-    document = {**result.to_dict(command), "out": str(folder)}
-    _write(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
-    _write(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))
-    if keep_particles:
-        _write(folder / PATHS, _tracks(result, STATES), ("run", "particle", "t", *STATES, "diverged"))
-    write_json(document, folder / RESULT)
-    return document
+    with place_for(result, Predicted, folder, PREDICTION, overwrite=overwrite) as place:
+        _write(place / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
+        _write(place / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))
+        if keep_particles:
+            _write(place / PATHS, _tracks(result, STATES), ("run", "particle", "t", *STATES, "diverged"))
+        return write_record(result.to_dict(command), place, PREDICTION)
 
 
 def _bands(result: Predicted) -> list[dict[str, Any]]:

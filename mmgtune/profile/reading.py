@@ -20,7 +20,6 @@ from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
 from ..resources import (
     DOCUMENTS,
-    PROFILE,
     folder,
     in_run,
     looked_for,
@@ -30,6 +29,7 @@ from ..resources import (
     ship_in,
     taken,
 )
+from ..run_files import PROFILE
 from ..toml_reading import TomlReader, toml_of
 from ..units import KNOT
 from .changing import missing_for

@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import MmgtuneError
 from ..physics.quantities import STATES
+from ..run_files import PROFILE
 
 if TYPE_CHECKING:
     from ..model import Model
@@ -49,7 +50,7 @@ def ship_of(folder: Path) -> Ship:
     from ..model import Model
     from ..profile import load_profile
 
-    path = folder / "profile.toml"
+    path = folder / PROFILE
     if not path.is_file():
         return NO_SHIP
     try:

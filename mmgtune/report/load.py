@@ -21,7 +21,7 @@ from ..errors import OptionError, Problem, reason
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
 from ..resources import looked_for
-from ..run_folders import MOTIONS
+from ..run_files import HISTORY, MOTIONS
 from ..trial.footer import rows_of
 from .forces import NO_SHIP, Ship
 from .wording import Channel, clean, input_channel
@@ -218,9 +218,9 @@ def inputs_of(folder: Path, data: Mapping[str, Any]) -> tuple[Channel, ...]:
 
 def history_in(folder: Path) -> dict[str, FloatArray]:
     """Columns of history.parquet by name; empty where there is none."""
-    if not (folder / "history.parquet").is_file():
+    if not (folder / HISTORY).is_file():
         return {}
-    columns = _parquet(folder / "history.parquet")
+    columns = _parquet(folder / HISTORY)
     known = {name: values.astype(np.float64) for name, values in columns.items() if values.dtype != object}
     return known if all(len(values) for values in known.values()) else {}
 

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from ..run_files import FIT
 from .blocks import Cell, Table, cells
 from .figures.plot import Axis, Figure, Line, Look, Mark, Panel, Rule, Words
 from .wording import NONE, TRIALS_OF_ROLE, change, number, percent, shown
@@ -199,6 +200,6 @@ def table(record: SweepRecord) -> Table:
 
 def _link(record: SweepRecord, run: Mapping[str, Any]) -> Cell:
     folder = run_folder(run)
-    if folder is None or not (record.folder / folder / "fit.json").is_file():
+    if folder is None or not (record.folder / folder / FIT).is_file():
         return Cell(NONE)
     return Cell("report", link=f"./{quote(folder)}/report.html")

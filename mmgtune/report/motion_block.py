@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..run_folders import MOTIONS
+from ..run_files import MOTIONS
 from . import findings, tables_of_motion
 from .blocks import Motions, Picture, Table
 from .common import picture

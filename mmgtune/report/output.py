@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..files import atomic, write_text
+from ..run_files import FIGURES, REPORT_HTML, REPORT_MARKDOWN
 from .figures import svg
 
 if TYPE_CHECKING:
@@ -18,12 +19,12 @@ def write(folder: Path, page: Page, html: str, markdown: str, pdf: bool) -> list
 
     pdf  figures as PDF files too; those that are there are written anew in any case
     """
-    drawn_before = _figures(folder / "report.md")
-    written = [write_text(folder / "report.html", html), write_text(folder / "report.md", markdown)]
+    drawn_before = _figures(folder / REPORT_MARKDOWN)
+    written = [write_text(folder / REPORT_HTML, html), write_text(folder / REPORT_MARKDOWN, markdown)]
     figures = page.figures()
     for name, figure in figures.items():
-        written.append(write_text(folder / "figures" / f"{name}.svg", svg.file(figure)))
-        path = folder / "figures" / f"{name}.pdf"
+        written.append(write_text(folder / FIGURES / f"{name}.svg", svg.file(figure)))
+        path = folder / FIGURES / f"{name}.pdf"
         if pdf or path.exists():
             from .figures.pdf import render
 
@@ -32,7 +33,7 @@ def write(folder: Path, page: Page, html: str, markdown: str, pdf: bool) -> list
             written.append(path)
     for name in drawn_before - set(figures):
         for suffix in (".svg", ".pdf"):
-            (folder / "figures" / f"{name}{suffix}").unlink(missing_ok=True)
+            (folder / FIGURES / f"{name}{suffix}").unlink(missing_ok=True)
     return written
 
 

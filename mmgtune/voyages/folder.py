@@ -8,34 +8,27 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
-from ..documents import write_json
-from ..errors import must_be_a
-from ..files import all_or_none, path_of, refuse_existing
 from ..fitting.journal import finished
 from ..parquet_tables import write_table
+from ..run_files import DRAWN_WINDOWS, VOYAGES, WINDOWS
 from ..trial.parquet import GROUP_ROWS
+from ..writing_results import place_for, write_record
 from .result import VoyageValidation
 
-RESULT = "voyages.json"
 
-
-@all_or_none()
 def write_voyages(result: VoyageValidation, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write the windows, those that are drawn and, last, the result.  Returns its document.
 
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
-    folder = path_of(folder)
-    must_be_a(result, VoyageValidation, "result")
-    refuse_existing([folder / RESULT], overwrite)
-    if result.table is not None:
-        write_table(folder / "windows.parquet", result.columns(), GROUP_ROWS)
-        write_table(folder / "drawn.parquet", _drawn(result), GROUP_ROWS)
-    document = {**result.to_dict(), "out": str(folder)}
-    write_json(document, folder / RESULT)
-    if not result.interrupted:
-        finished(folder)
-    return document
+    with place_for(result, VoyageValidation, folder, VOYAGES, overwrite=overwrite) as place:
+        if result.table is not None:
+            write_table(place / WINDOWS, result.columns(), GROUP_ROWS)
+            write_table(place / DRAWN_WINDOWS, _drawn(result), GROUP_ROWS)
+        document = write_record(result.to_dict(), place, VOYAGES)
+        if not result.interrupted:
+            finished(place)
+        return document
 
 
 def _drawn(result: VoyageValidation) -> dict[str, Any]:

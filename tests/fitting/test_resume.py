@@ -13,8 +13,8 @@ from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep, write_left_out
 from mmgtune.fitting import folder as run_folder
 from mmgtune.fitting.checkpoint import Checkpoint
-from mmgtune.fitting.journal import NAME
 from mmgtune.fitting.setting import make_setting
+from mmgtune.run_files import JOURNAL
 from mmgtune.trial import load_trials, write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run, run_until
@@ -39,7 +39,7 @@ def in_three(tmp_path_factory):
     """A whole leave-out in three parts, and its journal."""
     folder = tmp_path_factory.mktemp("whole")
     whole = leave_out("suzaku", "suzaku", IN_THREE, folder=folder)
-    return same(whole.to_dict()), (folder / NAME).read_bytes()
+    return same(whole.to_dict()), (folder / JOURNAL).read_bytes()
 
 
 def stopping(phase):
@@ -50,7 +50,7 @@ def stopping(phase):
 
 
 def lines(folder):
-    return (folder / NAME).read_text().splitlines()
+    return (folder / JOURNAL).read_text().splitlines()
 
 
 @pytest.mark.long
@@ -69,9 +69,9 @@ def test_a_stopped_leave_out_tells_what_it_has_and_goes_on(tmp_path):
     resumed = leave_out("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path, resume=True)
     assert same(resumed.to_dict()) == same(whole.to_dict())
     assert len(begun) == 1 + len(whole.parts)
-    assert (tmp_path / NAME).exists()  # as long as its result is nowhere else
+    assert (tmp_path / JOURNAL).exists()  # as long as its result is nowhere else
     write_left_out(resumed, tmp_path)
-    assert not (tmp_path / NAME).exists()
+    assert not (tmp_path / JOURNAL).exists()
 
 
 def test_stopped_before_the_first_part(tmp_path):
@@ -96,7 +96,7 @@ def test_a_stopped_sweep_recommends_nothing_and_goes_on(tmp_path):
         sweep("suzaku", "suzaku", SweepOptions(widths=(0.2, 0.4), starts=2), folder=tmp_path, resume=True)
     resumed = sweep("suzaku", "suzaku", options, folder=tmp_path, resume=True)
     assert same(resumed.to_dict()) == same(whole.to_dict())
-    assert not (tmp_path / NAME).exists()
+    assert not (tmp_path / JOURNAL).exists()
 
 
 def test_the_journal_tells_problems_apart(suzaku):
@@ -124,8 +124,8 @@ def test_the_journal_tells_problems_apart(suzaku):
 def test_half_a_line_at_the_end_is_done_again(tmp_path, in_three):
     hooks, _ = stopping("leaving out turn_p35")
     leave_out("suzaku", "suzaku", IN_THREE, hooks=hooks, folder=tmp_path)
-    text = (tmp_path / NAME).read_text()
-    (tmp_path / NAME).write_text(text[:-40])
+    text = (tmp_path / JOURNAL).read_text()
+    (tmp_path / JOURNAL).write_text(text[:-40])
     resumed = leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
     assert same(resumed.to_dict()) == in_three[0]
 
@@ -135,10 +135,10 @@ def test_a_journal_of_an_earlier_form_is_refused(tmp_path, in_three):
     head, _, rest = in_three[1].partition(b"\n")
     earlier = head.replace(b'"schema": 2', b'"schema": 1')
     assert earlier != head
-    (tmp_path / NAME).write_bytes(earlier + b"\n" + rest)
+    (tmp_path / JOURNAL).write_bytes(earlier + b"\n" + rest)
     with pytest.raises(OptionError, match="another version of this program"):
         leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
-    (tmp_path / NAME).write_bytes(10_000 * b"[" + b"\n" + rest)
+    (tmp_path / JOURNAL).write_bytes(10_000 * b"[" + b"\n" + rest)
     with pytest.raises(OptionError, match="it is damaged"):
         leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
 
@@ -149,10 +149,10 @@ def test_a_changed_line_is_done_again_and_so_is_what_follows(tmp_path, in_three)
     at = kept.index(b"0.", kept.index(b"\n") + 200)
     for damaged in (kept[: at + 3] + b"7" + kept[at + 4 :], kept[:at] + b"\xff" + kept[at + 1 :]):
         assert damaged != kept
-        (tmp_path / NAME).write_bytes(damaged)
+        (tmp_path / JOURNAL).write_bytes(damaged)
         resumed = leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
         assert same(resumed.to_dict()) == whole
-        assert (tmp_path / NAME).read_bytes() == kept
+        assert (tmp_path / JOURNAL).read_bytes() == kept
 
 
 def test_nothing_to_resume(tmp_path):
@@ -184,7 +184,7 @@ def test_kill_9_of_a_diagnosis_and_resume(tmp_path):
     trials = str(few_trials(tmp_path / "trials"))
     wanted = ("--effects", "speed-scale,current", "--targets", "R_0,w_P0")
     asked = ("diagnose", "-t", trials, *wanted, "--no-report", "--quiet")
-    journal = tmp_path / "cut" / NAME
+    journal = tmp_path / "cut" / JOURNAL
 
     def far():
         return journal.exists() and len(lines(journal.parent)) > 6
@@ -203,7 +203,7 @@ def test_kill_9_of_a_diagnosis_and_resume(tmp_path):
 def test_ctrl_c_of_a_diagnosis_concludes_nothing(tmp_path):
     trials = str(few_trials(tmp_path / "trials"))
     asked = ("diagnose", "-t", trials, "--effects", "speed-scale", "--targets", "R_0,w_P0", "--quiet")
-    journal = tmp_path / "run" / NAME
+    journal = tmp_path / "run" / JOURNAL
 
     def begun():
         return journal.exists() and len(lines(journal.parent)) > 1
@@ -221,7 +221,7 @@ def test_ctrl_c_of_a_diagnosis_concludes_nothing(tmp_path):
 @pytest.mark.long
 def test_ctrl_c_of_leave_out(tmp_path):
     asked = ("leave-out", "--targets", "R_0,w_P0,kappa", "--starts", "1", "--quiet", "--out", "run")
-    journal = tmp_path / "run" / NAME
+    journal = tmp_path / "run" / JOURNAL
     ended = run_until(journal.exists, signal.SIGINT, *asked, cwd=tmp_path)
     assert ended.code == 130, ended.err
     assert "Traceback" not in ended.err

@@ -239,9 +239,9 @@ def test_results_of_others_are_not_written_over(parts, tmp_path):
     before = (tmp_path / "model.safetensors").read_bytes()
     mixture = learn_mixture(profile, net, None, MixtureOptions(share=(0.3,)))
     with pytest.raises(OutputError, match="exists"):
-        mixture.write(tmp_path)
+        write_learned(mixture, tmp_path)
     assert (tmp_path / "model.safetensors").read_bytes() == before
-    mixture.write(tmp_path, overwrite=True)
+    write_learned(mixture, tmp_path, overwrite=True)
 
 
 def test_what_is_no_recurrent_network_is_called_by_its_file(tmp_path):

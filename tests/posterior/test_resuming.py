@@ -15,10 +15,10 @@ from mmgtune.options import PosteriorOptions, PredictOptions
 from mmgtune.posterior import plan_posterior, posterior, write_posterior
 from mmgtune.posterior.local import Windowed
 from mmgtune.posterior.room import make_room
-from mmgtune.posterior.run import JOURNAL
 from mmgtune.predicting import predict
 from mmgtune.profile import load_profile
 from mmgtune.resources import folder
+from mmgtune.run_files import POSTERIOR_JOURNAL
 from mmgtune.simulating import simulate
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
@@ -70,7 +70,7 @@ def test_what_was_stopped_gives_the_best_so_far_and_goes_on_to_the_same(tmp_path
         assert stopped.interrupted
         assert "Stopped before its end" in " ".join(stopped.warnings)
         assert write_posterior(stopped, tmp_path)["interrupted"]
-        assert (tmp_path / JOURNAL).is_file()
+        assert (tmp_path / POSTERIOR_JOURNAL).is_file()
         (scored,) = validate(tmp_path, trials).profiles
         for notes in (foretold(tmp_path).notes, scored.notes, simulate(tmp_path, trials).notes):
             assert any("stopped before its end" in note for note in notes)
@@ -83,7 +83,7 @@ def test_what_was_stopped_gives_the_best_so_far_and_goes_on_to_the_same(tmp_path
         assert resumed.sized.covered == expected.sized.covered
         write_posterior(resumed, tmp_path, overwrite=True)
         assert not any("stopped before its end" in note for note in foretold(tmp_path).notes)
-        assert not (tmp_path / JOURNAL).exists()
+        assert not (tmp_path / POSTERIOR_JOURNAL).exists()
 
 
 def test_other_choices_do_not_go_on_with_it(tmp_path, trials):
@@ -126,7 +126,7 @@ def test_particles_lie_beside_what_is_in_the_folder_and_are_not_replaced_unasked
     assert json.loads((tmp_path / "here" / "posterior.json").read_text())["interrupted"] is False
     assert (tmp_path / "here" / "fit.json").read_text() == "{}"
     assert (tmp_path / "here" / "journal.jsonl").read_text() == "of a fit"
-    assert not (tmp_path / "here" / JOURNAL).exists()
+    assert not (tmp_path / "here" / POSTERIOR_JOURNAL).exists()
     refused = run(*few, cwd=tmp_path)
     assert refused.code == 2
     assert "the output exists already" in refused.err

@@ -14,19 +14,21 @@ import numpy as np
 
 from mmgtune.checking import check, update_baseline
 from mmgtune.comparing_models import CompareModelsOptions, compare_models, write_model_comparison
+from mmgtune.comparing_profiles import write_comparison
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
 from mmgtune.errors import Problem
 from mmgtune.fitting import Information, LeaveOutOptions, leave_out, write_left_out
 from mmgtune.fleet import rows
-from mmgtune.fleet.commands import INFORMATION, Facts
+from mmgtune.fleet.commands import Facts
 from mmgtune.fleet.job import Job, Source
-from mmgtune.fleet.record import JOBS, write_record
+from mmgtune.fleet.record import write_record
 from mmgtune.model import Model
 from mmgtune.options import SimulateOptions, ValidateOptions
 from mmgtune.predicting import predict, write_prediction
 from mmgtune.profile import load_profile
 from mmgtune.provenance import made_by
 from mmgtune.recording import write_simulation, write_validation
+from mmgtune.run_files import INFORMATION, JOBS
 from mmgtune.simulating import simulate
 from mmgtune.trial import Trial, load_trials
 from mmgtune.trial.schema import ATTRIBUTES
@@ -90,7 +92,7 @@ def _leave_out(folder: Path) -> None:
 def _validate(folder: Path) -> None:
     data = load_trials("suzaku")
     result = validate(["suzaku", "suzaku_fam"], data, ValidateOptions())
-    write_validation(result, data, folder, "mmgtune validate suzaku suzaku_fam suzaku")
+    write_validation(result, folder, "mmgtune validate suzaku suzaku_fam suzaku")
 
 
 def _simulate(folder: Path) -> None:
@@ -140,7 +142,7 @@ def _plan(folder: Path) -> None:
 
 
 def _compare(folder: Path) -> None:
-    known("suzaku", "suzaku_fam").write(folder)
+    write_comparison(known("suzaku", "suzaku_fam"), folder)
 
 
 def _compare_models(folder: Path) -> None:

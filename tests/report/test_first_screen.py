@@ -98,7 +98,7 @@ def test_of_a_fit_how_it_was_simulated_stands_below(tmp_path: Path) -> None:
 
 def test_of_a_validation(tmp_path: Path) -> None:
     data = load_trials("suzaku")
-    write_validation(validate("suzaku", data), data, tmp_path)
+    write_validation(validate("suzaku", data), tmp_path)
     assert lead(tmp_path).startswith("The misfit J: squared differences")
     text = (tmp_path / "report.md").read_text(encoding="utf-8")
     assert "root mean square over all samples of 10 trials together" in text

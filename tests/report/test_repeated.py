@@ -18,7 +18,7 @@ from mmgtune.validating import validate
 def test_of_a_validation(tmp_path: Path) -> None:
     data = load_trials("suzaku")
     result = validate(["suzaku", "suzaku_fam"], data, ValidateOptions(manoeuvres=True))
-    write_validation(result, data, tmp_path)
+    write_validation(result, tmp_path)
     render(tmp_path)
     page = (tmp_path / "report.md").read_text(encoding="utf-8")
     _, _, told = page.partition("## Manoeuvres repeated")

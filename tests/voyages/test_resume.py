@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.fitting.journal import NAME
+from mmgtune.run_files import JOURNAL
 from mmgtune.trial import write_trial
 from mmgtune.voyages import Hooks, VoyageOptions, validate_voyages, write_voyages
 from mmgtune.voyages import run as running
@@ -53,7 +53,7 @@ def test_a_stopped_validation_goes_on_behind_the_last_finished_voyage(logs, tmp_
     cut = validate_voyages(profiles, logs, options, hooks=hooks, folder=tmp_path)
     assert cut.interrupted
     write_voyages(cut, tmp_path)
-    assert len((tmp_path / NAME).read_text().splitlines()) == 1 + 2  # what it belongs to, a and b
+    assert len((tmp_path / JOURNAL).read_text().splitlines()) == 1 + 2  # what it belongs to, a and b
     with pytest.raises(OptionError, match=r"different now: restart \(None, was 100.0\)"):
         validate_voyages(profiles, logs, folder=tmp_path, resume=True)
     scored: list[int] = []
@@ -62,7 +62,7 @@ def test_a_stopped_validation_goes_on_behind_the_last_finished_voyage(logs, tmp_
     resumed = validate_voyages(profiles, logs, options, folder=tmp_path, resume=True)
     assert sum(scored) == resumed.logs[2].windows + len(resumed.drawn)  # those of c alone, and those that are drawn
     write_voyages(resumed, tmp_path, overwrite=True)
-    assert not (tmp_path / NAME).exists()
+    assert not (tmp_path / JOURNAL).exists()
     same(tmp_path, tmp_path / "whole")
 
 

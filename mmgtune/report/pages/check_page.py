@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...metrics import METRICS
+from ...run_files import CHECKED
 from .. import advice, codes
 from ..blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from ..common import doubts, made_table, picture
@@ -222,5 +223,5 @@ KIND = Kind(
     ("verdict", "sentence", "items", "changed", "counts", "next"),
     lambda _, data: data,
     build,
-    record="checked.json",
+    record=CHECKED,
 )

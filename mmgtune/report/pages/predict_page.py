@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...how_far_off import mean
+from ...run_files import BANDS, TRACKS
 from .. import approaches, motion_block
 from ..band_indices import banded, indices_table
 from ..band_scores import MEANING, MEANING_OF_ONE, known_scores, score_cells
@@ -73,8 +74,8 @@ class PredictRecord:
 
 def read(folder: Path, data: Mapping[str, Any]) -> PredictRecord:
     """The run with its bands and tracks."""
-    bands = columns_in(folder / "bands.parquet", ("run", "variable", "t", *BAND), ("run", "variable"))
-    tracks = columns_in(folder / "tracks.parquet", ("run", "particle", "x", "y"), ("run",))
+    bands = columns_in(folder / BANDS, ("run", "variable", "t", *BAND), ("run", "variable"))
+    tracks = columns_in(folder / TRACKS, ("run", "particle", "x", "y"), ("run",))
     by_run: dict[str, dict[str, Columns]] = {}
     for (run, variable), rows in _grouped(bands, ("run", "variable")):
         by_run.setdefault(str(run), {})[str(variable)] = {name: bands[name][rows] for name in ("t", *BAND)}

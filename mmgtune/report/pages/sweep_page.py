@@ -10,6 +10,7 @@ from typing import Any
 from ... import limits
 from ...documents import parsed
 from ...errors import OptionError
+from ...run_files import FIT
 from .. import advice, misfit
 from ..blocks import Card, Cell, Commands, Page, Prose, Section, Table, cells
 from ..common import (
@@ -121,7 +122,7 @@ def _off(record: SweepRecord, run: Mapping[str, Any]) -> tuple[Card, ...]:
     if role is not None:
         return off_cards(run["off"][role], TRIALS_OF_ROLE[role])
     folder = misfit.run_folder(run)
-    path = record.folder / (folder or "") / "fit.json"
+    path = record.folder / (folder or "") / FIT
     if folder is None or not path.is_file():
         return ()
     fit = parsed(limits.text(path, limits.RECORD_BYTES, OptionError))
@@ -185,7 +186,7 @@ def _inside(record: SweepRecord) -> Iterator[Path]:
     """Folders of the sweep's runs that lie in its own."""
     for run in record.runs:
         name = misfit.run_folder(run)
-        if name is not None and (record.folder / name / "fit.json").is_file():
+        if name is not None and (record.folder / name / FIT).is_file():
             yield record.folder / name
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...arrays import FloatArray
+from ...run_files import DRAWN_WINDOWS, WINDOWS
 from ...units import shown_in
 from .. import advice, measures, motion_block
 from ..band_scores import bands_section
@@ -478,11 +479,11 @@ def _signed(value: Any) -> str:
 def _read(folder: Path, data: Mapping[str, Any]) -> VoyagesRecord:
     if not data["n_windows"]:
         return VoyagesRecord(folder, data, {}, {})
-    rows = columns_in(folder / "windows.parquet", ("model", "cVDM"), texts=("model",))
+    rows = columns_in(folder / WINDOWS, ("model", "cVDM"), texts=("model",))
     names = [str(one["profile"]) for one in data["models"]]
     cVDM = {name: rows["cVDM"][rows["model"] == name] for name in names}
     drawn: dict[str, dict[str, dict[str, FloatArray]]] = {}
-    found = columns_in(folder / "drawn.parquet", ("window", "model", *_STATES), texts=("window", "model"))
+    found = columns_in(folder / DRAWN_WINDOWS, ("window", "model", *_STATES), texts=("window", "model"))
     for window in dict.fromkeys(found["window"].tolist()):
         of = found["window"] == window
         for model in dict.fromkeys(found["model"][of].tolist()):
