@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import FloatArray, IntArray
 from .backends import STATES, Integrator
 from .bands import WindowScore, score_window
 from .displayed import Brief
+from .drawing_anew import interval_of
 from .errors import OptionError, Problem, brief, kind_of
 from .evaluation import TrialRecord, records
 from .given import ShipGiven, TrialsGiven, some_of
@@ -24,11 +25,8 @@ from .objective import spread, varying
 from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, predicted
 from .trial import Trial
 
-DRAWS = 2000
-"""Times runs are drawn again for an interval."""
-
 SEED = 1
-"""Of these draws."""
+"""Of the runs that are drawn anew for an interval."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -277,12 +275,10 @@ def improvement(
     runs = list(old)
     if len(runs) < 3:
         return share, None
-    rng = np.random.default_rng(SEED)
-    drawn = []
-    for _ in range(DRAWS):
-        chosen = rng.integers(len(runs), size=len(runs))
+
+    def gone(chosen: IntArray) -> float:
         a = L_MSE([score for k in chosen for score in new[runs[k]]])
         b = L_MSE([score for k in chosen for score in old[runs[k]]])
-        drawn.append(_share_gone(b, a))
-    low, high = np.percentile(drawn, [2.5, 97.5])
-    return share, (float(low), float(high))
+        return _share_gone(b, a)
+
+    return share, interval_of(gone, len(runs), SEED)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
+from ..drawing_anew import interval_of
+
 Runs = Mapping[str, tuple[str, int]]
 """Kind of manoeuvre of runs, and the samples of each that count."""
-
-DRAWS = 2000
-"""Times runs are drawn anew for an interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +98,12 @@ def gains_of(parts: Sequence[Trained], step: int, seed: int) -> list[Gain]:
     for kind in sorted({one[0] for one in all_runs}):
         n, before, after = np.array([one[1:] for one in all_runs if one[0] == kind]).T
         old, new = float(n @ before / n.sum()), float(n @ after / n.sum())
-        interval = None
-        if len(n) > 2:
-            rng = np.random.default_rng([seed, 6])
-            drawn = rng.integers(len(n), size=(DRAWS, len(n)))
-            shares = 1.0 - (n * after)[drawn].sum(axis=1) / (n * before)[drawn].sum(axis=1)
-            low, high = np.percentile(shares, [2.5, 97.5])
-            interval = float(low), float(high)
-        found.append(Gain(kind, len(n), old, new, 1.0 - new / old, interval))
+        share = partial(_share_gone, n * before, n * after)
+        sure = interval_of(share, len(n), [seed, 6]) if len(n) > 2 else None
+        found.append(Gain(kind, len(n), old, new, 1.0 - new / old, sure))
     return found
+
+
+def _share_gone(before: FloatArray, after: FloatArray, drawn: IntArray) -> float:
+    """Of errors (n_runs,), over the runs that were drawn."""
+    return float(1.0 - after[drawn].sum() / before[drawn].sum())

@@ -13,6 +13,7 @@ from ...arrays import FloatArray
 from ...backends import STATES
 from ...displayed import Brief
 from ...documents import finite
+from ...drawing_anew import interval_of
 from ...fitting.box import group_of
 from ...fitting.comparison import ComparedTrials, TrialComparison
 from ...fitting.least_squares import fit_offsets, squares_by_case
@@ -27,9 +28,6 @@ from ..searching.search import Found
 from ..signatures.intervals import OF_BOX, covariance
 from .elsewhere import FIRST, estimated_there, first_part
 from .unseen import Beside, Unseen, problem_on
-
-RESAMPLES = 2000
-"""Resamples of the trials an interval is made from."""
 
 RELEVANT = 0.05
 """Error beyond noise that is worth speaking of, as a share of the noise."""
@@ -193,10 +191,7 @@ class Gain(Brief):
         differ."""
         if len(self.excess) < 2:
             return None
-        rng = np.random.default_rng(0)
-        picks = rng.integers(len(self.excess), size=(RESAMPLES, len(self.excess)))
-        low, high = np.quantile([_share(self.excess[pick]) for pick in picks], [0.025, 0.975])
-        return float(low), float(high)
+        return interval_of(lambda drawn: _share(self.excess[drawn]), len(self.excess), 0)
 
     @property
     def surely_removed(self) -> float:
