@@ -62,7 +62,7 @@ def resumed_nowhere(option: str) -> Problem:
     return Problem(what, "resume", why, f"add {option}=FOLDER, or leave resume out")
 
 
-def hold_flag(overwrite: object) -> None:
+def require_flag(overwrite: object) -> None:
     """Raises OptionError for what is neither true nor false."""
     if not isinstance(overwrite, bool) and type(overwrite).__name__ not in ("bool", "bool_"):  # those of NumPy
         why, fix = "it says whether files that are there may be replaced", "give True or False"
@@ -76,7 +76,7 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
     Raises OutputError where ``path`` exists and ``overwrite`` is false, where a pipe, a socket or a device is there,
     or the system refuses to write.
     """
-    hold_flag(overwrite)
+    require_flag(overwrite)
     if not overwrite and os.path.lexists(path):  # a link to nowhere would be replaced too
         raise OutputError(exists(path))
     refuse_irregular(path)
@@ -162,7 +162,7 @@ def remove_left_overs(folder: Path) -> None:
                 path.unlink()
 
 
-def hold_regular(path: Path) -> None:
+def require_regular(path: Path) -> None:
     """Raises OSError where a path leads to a pipe, a socket or a device: to open one may wait for ever.
 
     For what is read more than once, or not from its beginning to its end.
@@ -240,7 +240,7 @@ def refuse_existing(paths: Iterable[Path], overwrite: bool = False) -> None:
         refuse_file(folder)
     for path in paths:
         refuse_irregular(path)
-    hold_flag(overwrite)
+    require_flag(overwrite)
     if overwrite:
         return
     found = [exists(path) for path in dict.fromkeys(paths) if os.path.lexists(path)]

@@ -69,7 +69,7 @@ def lacking(given: object) -> list[str]:
     return gone if callable(getattr(given, "predict", None)) or len(gone) < len(MEMBERS) / 2 else []
 
 
-def hold_described(predictor: object) -> None:
+def require_described(predictor: object) -> None:
     """Raises OptionError with everything that a predictor says of itself and that can not be."""
     who = type(predictor).__name__
     problems = []
@@ -87,7 +87,7 @@ def hold_described(predictor: object) -> None:
         raise OptionError(*problems)
 
 
-def hold_predicted(predictor: Any, cases: Cases, found: object) -> tuple[FloatArray, BoolArray]:
+def require_predicted(predictor: Any, cases: Cases, found: object) -> tuple[FloatArray, BoolArray]:
     """The states and marks of a prediction, neither copied.
 
     Raises OptionError where they are not there, have another shape than is promised, or are not finite before the end

@@ -55,7 +55,7 @@ def trials_of(given: TrialsGiven) -> TrialSet:
     Files of trials may stand for them in a list.  Raises TrialError, OptionError for anything else.
     """
     if isinstance(given, TrialSet):
-        _hold_timed(given.trials.values())
+        _require_timed(given.trials.values())
         return given
     return load_trials(given) if isinstance(given, (str, Path)) else _set_of(_several(given))
 
@@ -99,7 +99,7 @@ def _several(given: object) -> list[Trial | IndexTrial]:
         parts = [trial for one in parts for trial in (load_trials(one) if _is_file(one) else (one,))]
     others = [one for one in parts or () if not isinstance(one, (Trial, IndexTrial))]
     if parts is not None and not others:
-        _hold_timed(one for one in parts if isinstance(one, Trial))
+        _require_timed(one for one in parts if isinstance(one, Trial))
         return parts
     what = f"{kind_of(given)} is no set of trials"
     if others and isinstance(given, Sequence):
@@ -135,7 +135,7 @@ def _is_folder(one: object) -> bool:
     return isinstance(one, (str, Path)) and os.path.isdir(one)
 
 
-def _hold_timed(trials: Iterable[Trial]) -> None:
+def _require_timed(trials: Iterable[Trial]) -> None:
     """Raises TrialError for trials in memory whose time a file of them could not have."""
     for one in trials:
         if not increasing(one.t):

@@ -39,7 +39,7 @@ class Limit:
         why = f"the limit is {self.most}" + (f"; {why}" if why else "")
         return Problem(f"{self.of} of {size} {self.unit}: too many", where, why, self.fix)
 
-    def hold(self, asked: float, where: str, error: type[MmgtuneError], why: str = "") -> None:
+    def require(self, asked: float, where: str, error: type[MmgtuneError], why: str = "") -> None:
         """Raise ``error`` where ``asked`` is more than there may be."""
         problem = self.problem(asked, where, why)
         if problem is not None:

@@ -20,7 +20,7 @@ from .components import split_name
 from .documents import RepeatedKey, parsed
 from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError, must_be_a, reason
-from .files import hold_regular, path_of
+from .files import path_of, require_regular
 from .model import Model
 from .parquet_tables import write_table
 from .predictor import PhysicsPredictor, Sampling
@@ -92,7 +92,7 @@ class Particles:
 
         as_logged  in the surroundings and by the sensors of the trials; else the ship alone, both as in the profile
         """
-        hold_usable(self)
+        require_usable(self)
         model = Model(self.profile if as_logged else self.without_the_day())
         return ParticlePredictor(model, model.matrix(), integrator, particles=self, as_logged=as_logged)
 
@@ -154,7 +154,7 @@ def save_particles(particles: Particles, path: Path | str, overwrite: bool = Fal
     """
     path = path_of(path)
     must_be_a(particles, Particles, "particles")
-    hold_usable(particles)
+    require_usable(particles)
     facts = {"schema": SCHEMA, "profile": particles.profile.text, "facts": dict(particles.facts)}
     columns = dict(zip(particles.names, particles.values, strict=True))
     write_table(path, columns, overwrite=overwrite, metadata={KEY: json.dumps(facts, allow_nan=False).encode()})
@@ -169,7 +169,7 @@ def load_particles(path: Path | str) -> Particles:
     must_be_name(path, "file of particles", ProfileError)
     path = Path(path)
     try:
-        hold_regular(path)
+        require_regular(path)
         with pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True) as file:
             rows_of(file.metadata, path.stat().st_size, str(path), ProfileError)
             table = file.read(use_threads=False)
@@ -215,7 +215,7 @@ def _wrong(names: tuple[str, ...], values: FloatArray) -> tuple[str, str] | None
     return f"particles of '{names[int(np.flatnonzero(beyond)[0])]}' beyond {LARGEST:g}", "no ship has such a number"
 
 
-def hold_usable(particles: Particles) -> None:
+def require_usable(particles: Particles) -> None:
     """Raises OptionError for particles in memory that no file of them could hold."""
     if wrong := _wrong(particles.names, particles.values):
         raise OptionError(

@@ -17,7 +17,7 @@ from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
 from .circumstances import notes_on
 from .displayed import Brief
 from .errors import OptionError, Problem, brief, kind_of
-from .foreign import RETURNED, hold_described, hold_predicted, lacking
+from .foreign import RETURNED, lacking, require_described, require_predicted
 from .given import Found, ship_of
 from .model import Model
 from .physics.quantities import State, Surroundings
@@ -81,7 +81,7 @@ def predicted(predictor: Predictor, cases: Cases) -> Prediction:
     Raises OptionError for states or marks of another shape than ``Prediction`` has, and for states that are not finite
     in a run that is not marked.
     """
-    return Prediction(*hold_predicted(predictor, cases, predictor.predict(cases)))
+    return Prediction(*require_predicted(predictor, cases, predictor.predict(cases)))
 
 
 class Stepper(Protocol):
@@ -305,7 +305,7 @@ def as_predictor(
         return PhysicsPredictor(ship, own if theta is None else _columns(theta, len(own)), integrator, backend)
     if isinstance(ship, type) or not isinstance(ship, Predictor):
         raise OptionError(_no_ship(ship))
-    hold_described(ship)
+    require_described(ship)
     if theta is not None:
         raise OptionError(Problem("coefficients are given for a predictor", ship.name, "only a profile has them"))
     return ship

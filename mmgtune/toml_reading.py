@@ -29,7 +29,7 @@ def toml_of(
         raise error(Problem(f"{what} is nested too deeply", where, fix=NESTING.fix)) from why
     except ValueError as why:  # a number of thousands of digits
         raise error(Problem(f"{what} has a number that cannot be read", where, str(why), "write it shorter")) from why
-    NESTING.hold(depth(found), where, error)
+    NESTING.require(depth(found), where, error)
     if not profile and {"ship", "hull"} <= found.keys():
         there = f"it has [ship] and [hull], and {what} is wanted here"
         fix = f"give {what}, and the profile where a ship is wanted"

@@ -120,7 +120,7 @@ def command(
         path = given.baseline_alone("update_baseline", baseline)
         _update(names, path, options, given)
     else:
-        given.hold()
+        given.require_writable()
         with c.placed(out, force=force):
             report = _checked(names, options, given)
         raise typer.Exit(CODES[report.verdict])
@@ -218,7 +218,7 @@ class Given:
             raise OptionError(*(Problem(f"it does not go with {name}=True", one, why, "leave it out") for one in asked))
         return baseline
 
-    def hold(self) -> None:
+    def require_writable(self) -> None:
         """Raises OutputError where a file that is asked for cannot be written, before any work."""
         from ..checking.renderers.junit import refuse_other
 

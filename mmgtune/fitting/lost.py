@@ -16,7 +16,7 @@ SHOWN = 3
 """Trials that are named, and warnings of them that are told."""
 
 
-def hold_simulated(
+def require_simulated(
     profile: ShipProfile,
     problem: FitProblem,
     unit: FloatArray,

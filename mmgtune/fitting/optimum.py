@@ -54,7 +54,7 @@ class Seeking:
     """A search that can begin.
 
     before      (n_targets,) pre-determined values in the unit cube; cost_before: there
-    hold        raises where the simulation of a trial runs away at (n_targets,) of a problem
+    require     raises where the simulation of a trial runs away at (n_targets,) of a problem
     checkpoint  of CMA-ES, None for nowhere; recorded: costs of its generations that an earlier run has noted
     """
 
@@ -62,7 +62,7 @@ class Seeking:
     options: FitOptions
     before: FloatArray
     cost_before: float
-    hold: Callable[[FitProblem, FloatArray], None]
+    require: Callable[[FitProblem, FloatArray], None]
     hooks: Hooks
     checkpoint: Checkpoint | None
     recorded: list[FloatArray] | None
@@ -76,7 +76,7 @@ class Seeking:
         best = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - self.before) ** 2)))
         problem = self.problem.with_offsets(best.offsets)
         if self.options.loss == "huber" and not hooks.stop():
-            self.hold(problem, best.unit)
+            self.require(problem, best.unit)
             hooks.on_phase("weighing outliers down")
             problem, best = weigh_down(problem, best, ridge, self.before)
             ends = [best]
@@ -88,7 +88,7 @@ class Seeking:
                 ends += solve(problem, found.unit[:, None], stop=hooks.stop)
                 best = min(ends, key=lambda end: end.J)
         if not np.isfinite(best.J):
-            self.hold(problem, best.unit)
+            self.require(problem, best.unit)
         if not hooks.stop() and ridge == 0.0:
             best = _nearest(problem, best, self.before)
         unit, cost = best.unit, best.J

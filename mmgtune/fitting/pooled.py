@@ -25,7 +25,7 @@ from .. import limits
 from ..arrays import FloatArray
 from ..documents import parsed
 from ..errors import FEW, OptionError, Problem, brief, reason
-from ..files import hold_regular
+from ..files import require_regular
 from ..resources import must_be_name
 from .box import Box
 from .information import Information
@@ -240,7 +240,7 @@ def _member(told: tuple[str, Any]) -> tuple[str, Information]:
 def _text(file: Path) -> str:
     """Text of the file of a class, which is read more than once.  Raises OptionError."""
     try:
-        hold_regular(file)
+        require_regular(file)
         return limits.text(file, limits.RECORD_BYTES, OptionError)
     except (OSError, ValueError) as error:
         raise _no_class(file, error) from error

@@ -32,7 +32,7 @@ from .extending import settled
 from .identifiability import analyse
 from .journal import journalled
 from .least_squares import fit_offsets
-from .lost import hold_simulated
+from .lost import require_simulated
 from .optimum import Optimum, Seeking
 from .pooled import read_sisters, unheard
 from .problem import FitProblem
@@ -97,8 +97,10 @@ def _fit(
     odd = oddities(trials.trials, profile.L_pp)
     posed = _posed(profile, in_pieces(trials, options), options, hooks)
     recorded = checkpoint.load() if checkpoint and resume and checkpoint.path.is_file() else None
-    hold = partial(hold_simulated, profile, trials=_tuned_on(posed.setting.trials))
-    seeking = Seeking(posed.problem, posed.options, posed.before, posed.cost_before, hold, hooks, checkpoint, recorded)
+    require = partial(require_simulated, profile, trials=_tuned_on(posed.setting.trials))
+    seeking = Seeking(
+        posed.problem, posed.options, posed.before, posed.cost_before, require, hooks, checkpoint, recorded
+    )
     best = seeking.optimum(more_starts)
     hooks.on_phase("certificate and identifiability")
     found = _looked_at(profile, posed, best, provenance)
@@ -242,7 +244,7 @@ def traded(profile: ShipProfile, trials: TrialSet, problem: FitProblem) -> tuple
     """One coefficient of every direction that no trial determines, found at the pre-determined values."""
     free = np.zeros(len(problem.box), dtype=bool)
     before = problem.box.to_unit(problem.box.pre)
-    hold_simulated(profile, problem, before, _tuned_on(trials), "with the values of the profile")
+    require_simulated(profile, problem, before, _tuned_on(trials), "with the values of the profile")
     directions = analyse(problem, before, free).null_directions
     return tuple(next(iter(direction.weights)) for direction in directions)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import OptionError, Problem, TrialError
-from ..files import hold_regular
+from ..files import require_regular
 
 EXTRA = "pip install 'mmgtune[cluster]'"
 """What brings fsspec and Dask."""
@@ -55,7 +55,7 @@ def hashes(place: str) -> dict[str, str]:
     found_here: dict[str, str] = {}
     for file in files:
         try:
-            hold_regular(file)
+            require_regular(file)
             with file.open("rb") as opened:
                 found_here[file.name] = hashlib.file_digest(opened, "sha256").hexdigest()
         except OSError as error:

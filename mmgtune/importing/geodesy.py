@@ -36,7 +36,7 @@ def with_local_positions(record: Record, log_map: LogMap) -> Record:
     beyond = finite & (np.abs(lat) > 90.0)
     if beyond.sum() > 0.01 * finite.sum():
         row = int(np.flatnonzero(beyond)[0])
-        _hold_numbers(record, lat[beyond])
+        _require_numbers(record, lat[beyond])
         why = f"latitude reaches {largest:.6g} deg, which is beyond a pole; longitude is {lon[row]:.6g} there"
         place = f"{record.path}, at {latitude.t[row]:.6g} s"
         raise LogError(
@@ -86,7 +86,7 @@ def _near(record: Record, t: FloatArray, x: FloatArray, y: FloatArray) -> None:
         record.notes.append(f"{wild.sum()} positions on another part of the earth were left out")
 
 
-def _hold_numbers(record: Record, beyond: FloatArray) -> None:
+def _require_numbers(record: Record, beyond: FloatArray) -> None:
     """Raise LogError where latitudes beyond a pole (n,) are one and the same number, which stands for none."""
     code = float(beyond[0])
     if (beyond == code).all() and abs(code) > 360.0:

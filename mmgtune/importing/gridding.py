@@ -36,7 +36,7 @@ class Grid:
     bridged: dict[str, int]
 
 
-def hold_step(step: object) -> None:
+def require_step(step: object) -> None:
     """Raises OptionError for what is no time step [s] of trials; None is the map's, or the log's own."""
     if step is None:
         return

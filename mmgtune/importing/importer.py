@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..documents import write_json
 from ..errors import LogError, Problem, kind_of, parts_of
-from ..files import all_or_none, hold_flag, path_of, refuse_existing, refuse_file, true_path
+from ..files import all_or_none, path_of, refuse_existing, refuse_file, require_flag, true_path
 from ..phrases import counted
 from ..resources import must_be_name
 from ..trial import Trial, write_trial
@@ -36,7 +36,7 @@ from .formats.table import InPart, Table
 from .formats.text import binary, read_text, start_of
 from .formats.workbook import logs_among, outlines_of, read_workbook
 from .geodesy import not_mirrored, with_local_positions
-from .gridding import FEWEST, Grid, hold_step, missing_between, on_grid, stretches
+from .gridding import FEWEST, Grid, missing_between, on_grid, require_step, stretches
 from .jumps import cut_at_jumps
 from .maps.mapping import ALL, LogMap
 from .maps.quantities import MEASURED
@@ -128,12 +128,12 @@ def import_logs(
     Raises LogError with everything wrong in any of the logs, OptionError for a step that is none, and OutputError where
     a file exists already and ``overwrite`` is false; nothing is written then.
     """
-    hold_step(step)
+    require_step(step)
     out = path_of(out)
     paths = paths_of(logs)
     log_map = log_map if isinstance(log_map, LogMap) else load_map(log_map)
     refuse_file(out)
-    hold_flag(overwrite)
+    require_flag(overwrite)
     problems: list[Problem] = []
     runs: list[tuple[Path, LogMap]] = []
     for log in paths:

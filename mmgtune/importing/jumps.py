@@ -33,7 +33,7 @@ def cut_at_jumps(record: Record, log_map: LogMap, step: float | None) -> list[Re
     before = np.flatnonzero(apart > max(LONG, log_map.gap) * max(own, step or log_map.step or own))
     if not len(before):
         return [record]
-    LOG_PARTS.hold(len(before) + 1, str(record.path), LogError, f"time jumps forward {len(before)} times")
+    LOG_PARTS.require(len(before) + 1, str(record.path), LogError, f"time jumps forward {len(before)} times")
     k = int(before[0])
     how = "once" if len(before) == 1 else f"{len(before)} times"
     note = (

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from ..backends.twins import jax_module
 from ..errors import OptionError, Problem, reason
-from ..files import atomic, hold_regular
+from ..files import atomic, require_regular
 from ..fitting.checkpoint import differing, nothing_to_resume
 from ..run_files import CHECKPOINTS
 from .training import Progressed
@@ -114,7 +114,7 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
     from safetensors import safe_open
 
     try:
-        hold_regular(path)
+        require_regular(path)
         if path.is_dir():
             raise OSError("it is a folder")
         with safe_open(path, framework="numpy") as file:

@@ -139,7 +139,7 @@ def learn_mixture(
     """
     must_be(options, MixtureOptions)
     several = networks if isinstance(networks, (list, tuple)) else [networks]
-    limits.NETWORKS.hold(len(several), "NETWORK", OptionError)
+    limits.NETWORKS.require(len(several), "NETWORK", OptionError)
     hybrid, nets = _hybrid(model), tuple(_network(one) for one in several)
     try:
         mixtures = [Mixture(hybrid, nets, share) for share in options.share]

@@ -77,7 +77,7 @@ def samples_of(trials: Sequence[Trial], inputs: Sequence[str], step: float, drau
     states, controls, beside = [], [], []
     held = np.array([name in HELD for name in Surroundings._fields])
     first = [0]
-    hold_grids(trials, step)
+    require_grids(trials, step)
     for trial in trials:
         grid = trial.t[0] + step * np.arange(int(trial.duration / step + 1e-6) + 1)
         states.append(np.column_stack([_measured(grid, trial.t, column, step) for column in trial.motion.T]))
@@ -109,7 +109,7 @@ def samples_of(trials: Sequence[Trial], inputs: Sequence[str], step: float, drau
     return found
 
 
-def hold_grids(trials: Sequence[Trial], step: float) -> None:
+def require_grids(trials: Sequence[Trial], step: float) -> None:
     """Raises TrialError for trials of which far more samples would be made than they have, as by a time that jumps."""
     fix = "cut the trial where its time jumps, or give a longer step"
     found = (

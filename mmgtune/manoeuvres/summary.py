@@ -23,7 +23,7 @@ def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = N
               one, because a helmsman who follows another heading does not reverse at the check heading
     Raises OptionError for what is no record or no length above 0.
     """
-    _hold_kinds(track, L_pp)
+    _require_kinds(track, L_pp)
     kind = manoeuvre_kind(track)
     if kind == "turning":
         return turning_indices(track, L_pp).to_dict()
@@ -32,12 +32,12 @@ def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = N
     return {}
 
 
-def _hold_kinds(track: object, L_pp: object) -> None:
+def _require_kinds(track: object, L_pp: object) -> None:
     if not isinstance(track, Track):
         why = "indices are read from the record of one manoeuvre"
         fix = "give a Track: track_of(TRIAL), simulate(SHIP, TRIAL)[0].track(), or Track(t=..., x=..., ...)"
         raise OptionError(Problem(f"{kind_of(track)} is no track", brief(track), why, fix))
-    _hold_number("L_pp", L_pp)
+    _require_number("L_pp", L_pp)
 
 
 _NUMBERS = {
@@ -53,7 +53,7 @@ _NUMBERS = {
 """What each is, its unit, the same in full, where a profile has it, and what it is for."""
 
 
-def _hold_number(name: str, value: object, above_0: bool = True) -> None:
+def _require_number(name: str, value: object, above_0: bool = True) -> None:
     of, unit, whole, where, why = _NUMBERS[name]
     if not is_real(value):
         why, fix = f"it is {whole} in {unit}", f"give a number; a profile has it as {where}"
@@ -77,8 +77,8 @@ def criteria_of(
     measured  as in ``indices_of``
     Raises OptionError for what is no record, a length not above 0, and a speed below 0.
     """
-    _hold_kinds(track, L_pp)
-    _hold_number("V", V, V != 0.0)
+    _require_kinds(track, L_pp)
+    _require_number("V", V, V != 0.0)
     kind = manoeuvre_kind(track)
     if kind == "turning":
         return check_turning(turning_indices(track, L_pp), L_pp, V)

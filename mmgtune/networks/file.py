@@ -12,7 +12,7 @@ import numpy as np
 from .. import limits
 from ..documents import parsed
 from ..errors import NetworkError, Problem, brief, must_be_a, reason
-from ..files import atomic, hold_regular, path_of
+from ..files import atomic, path_of, require_regular
 from ..profile import parse_profile
 from ..resources import folder, in_run, looked_for, must_be_name, network_names, taken
 from ..run_files import MODEL
@@ -110,10 +110,10 @@ def load_network(path: str | Path) -> Trained:
     path = in_run(path, MODEL) or taken(path, Path(path).exists(), bundled) or Path(path)
     where = str(path)
     try:
-        hold_regular(path)
+        require_regular(path)
         if path.is_dir():
             raise NetworkError(Problem("a folder is no trained model", where, "", _in_folder(path)))
-        limits.NETWORK_BYTES.hold(path.stat().st_size, where, NetworkError)
+        limits.NETWORK_BYTES.require(path.stat().st_size, where, NetworkError)
         with safe_open(path, framework="numpy") as file:
             header, made = _header(file.metadata() or {}, where)
             _hold(header, made.header, where)
@@ -160,7 +160,7 @@ class _Made(NamedTuple):
 def _recurrent(header: dict[str, Any], weights: Weights, scales: Scales, where: str) -> Network:
     inputs = _inputs(header, where)
     if header["memory"] is not None:
-        limits.NETWORK_MEMORY.hold(header["memory"], where, NetworkError)
+        limits.NETWORK_MEMORY.require(header["memory"], where, NetworkError)
     mirrored = header.get("mirrored", False)  # files from before there were such networks do not say
     if not isinstance(mirrored, bool):
         raise NetworkError(Problem(f"mirrored of the network is {brief(mirrored)}", where, "", FIX))
@@ -169,7 +169,7 @@ def _recurrent(header: dict[str, Any], weights: Weights, scales: Scales, where: 
 
 
 def _hybrid(header: dict[str, Any], weights: ResidualWeights, ranges: Ranges, where: str) -> Hybrid:
-    limits.PROFILE_BYTES.hold(len(header["profile"]), where, NetworkError)
+    limits.PROFILE_BYTES.require(len(header["profile"]), where, NetworkError)
     profile = parse_profile(header["profile"], Path(where))
     return Hybrid(profile, weights, ranges, float(header["memory"]), header["facts"])
 
@@ -286,7 +286,7 @@ def _hold(header: dict[str, Any], kinds: _Kinds, where: str) -> None:
         if isinstance(kind, dict) and isinstance(given, dict):
             _hold(given, kind, where)
         elif isinstance(kind, list) and isinstance(given, list) and all(isinstance(one, dict) for one in given):
-            limits.NETWORKS.hold(len(given), where, NetworkError)
+            limits.NETWORKS.require(len(given), where, NetworkError)
             for one in given:
                 _hold(one, kind[0], where)
         elif isinstance(kind, (dict, list)) or not isinstance(given, kind) or isinstance(given, bool):

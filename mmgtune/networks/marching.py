@@ -39,7 +39,7 @@ def driven(cases: Cases, h: float) -> tuple[FloatArray, FloatArray]:
     """
     span = cases.t - cases.t[:, :1]
     longest = float(span.max(initial=0.0))
-    RUN_STEPS.hold(longest / h, f"{longest:.6g} s in steps of {h:g} s", TrialError)
+    RUN_STEPS.require(longest / h, f"{longest:.6g} s in steps of {h:g} s", TrialError)
     n_steps = max(1, math.ceil(longest / h - 1e-9))
     return (
         _on_grid(span, cases.controls, cases.n_samples, h, n_steps),

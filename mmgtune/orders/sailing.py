@@ -76,9 +76,9 @@ class Sailing:
             raise OptionError(Problem(what, "helmsman", why, fix))
         must_be_a(self.id, str, "id")
         for name in _TAKES:
-            _hold_function(name, getattr(self, name))
+            _require_function(name, getattr(self, name))
         positive(longest=self.longest, sample=self.sample, **({} if self.step is None else {"step": self.step}))
-        TRIAL_SAMPLES.hold(self.longest / self.sample, "longest", OptionError)
+        TRIAL_SAMPLES.require(self.longest / self.sample, "longest", OptionError)
         if not (self.speed is None or is_number(self.speed, above=0.0)):
             what = f"the approach speed is {brief(self.speed)}"
             raise OptionError(Problem(what, "speed", "it is in m/s", "give a number above 0"))
@@ -112,7 +112,7 @@ _TAKES = {
 """What each function of a sailing takes and returns, and how one is written."""
 
 
-def _hold_function(name: str, given: object) -> None:
+def _require_function(name: str, given: object) -> None:
     """Raises OptionError for what cannot be called with one number; None is no function at all."""
     must_be_a(given, (Callable, NoneType), name)  # type: ignore[arg-type]
     if given is None:
@@ -148,7 +148,7 @@ class Watch:
         longest = sailing.step or min(LONGEST_STEP, FINE * model.L_pp / self.U_0)
         self.steps = max(1, math.ceil(sailing.sample / longest - 1e-9))
         self.h = sailing.sample / self.steps
-        MANOEUVRE_STEPS.hold(sailing.longest / self.h, "step", OptionError)
+        MANOEUVRE_STEPS.require(sailing.longest / self.h, "step", OptionError)
         self.samples = round(sailing.longest / sailing.sample)
         self.over = self.samples < 1
         self.diverged = False

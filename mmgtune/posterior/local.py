@@ -120,7 +120,7 @@ def make_windowed(
     scale = scale_of(room.profile)
     unit = scale.L / scale.U
     sigma = np.maximum(np.median([noise_of(trial) for trial in trials], axis=0), least_noise(room.profile))
-    _hold_long(trials, APART * unit)
+    _require_long(trials, APART * unit)
     pieces = [piece for trial in trials for piece in windows(trial, LENGTHS * unit, APART * unit)]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(PAPER_CHANNELS, 1.0), every=APART * unit)
     cases = cases_of(pieces, objective, model.inputs, model.draught)
@@ -141,7 +141,7 @@ def make_windowed(
     return Windowed(room, model, tuple(trials), cases, sigma, tuple(whitened), backend, integrator)
 
 
-def _hold_long(trials: Sequence[Trial], apart: float) -> None:
+def _require_long(trials: Sequence[Trial], apart: float) -> None:
     """Raises TrialError for trials without a complete sample so long [s] after another: nothing is compared in them."""
     short = [trial for trial in trials if not _is_compared(trial, apart)]
     if short:

@@ -15,7 +15,7 @@ from ..phrases import counted
 from .folder import FILES
 from .local import make_windowed
 from .room import make_room, tags_of
-from .run import hold_some
+from .run import require_some
 from .sizing import left_out_of
 
 SLOPES = (8, 40)
@@ -27,7 +27,7 @@ def plan_posterior(profile: ShipGiven, trials: TrialsGiven, options: PosteriorOp
     """What drawing particles would do.  Raises OptionError and TrialError for what it would refuse."""
     ship, data = ship_of(profile), trials_of(trials)
     chosen = [data.trials[name] for name in data.tune]
-    hold_some(chosen)
+    require_some(chosen)
     room = make_room(ship, size=options.room, without=options.without)
     groups, parts = left_out_of(chosen) if options.leave_out else ((), [])
     backend, integrator = get_backend(options.backend), options.make_integrator()

@@ -181,7 +181,7 @@ def _drawn(
     trials_ship: str,
 ) -> Posterior:
     """Particles from trials of a ship of some id."""
-    hold_some(chosen)
+    require_some(chosen)
     room = make_room(ship, size=options.room, without=options.without)
     backend = get_backend(options.backend)
     integrator = options.make_integrator()
@@ -222,7 +222,7 @@ def _drawn(
     )
 
 
-def hold_some(chosen: Sequence[Trial]) -> None:
+def require_some(chosen: Sequence[Trial]) -> None:
     """Raises TrialError where there is no time series to learn from."""
     if not chosen:
         raise TrialError(Problem("no time series to learn from", "trials", fix="give trial files, and tune to them"))

@@ -127,10 +127,10 @@ def _possible(predictor: Predictor, found: list[Asked]) -> None:
     """Raises OptionError for a rudder angle that the steering gear does not reach."""
     for name, gear in zip(predictor.inputs, actuators_of(predictor), strict=True):
         for one in found if INPUTS[name].role == "rudder" else ():
-            hold_reached(name, gear, np.array([one.rudder]), "zigzag" if one.manoeuvre == "zigzag" else "turn")
+            require_reached(name, gear, np.array([one.rudder]), "zigzag" if one.manoeuvre == "zigzag" else "turn")
 
 
-def hold_reached(name: str, gear: Actuator | None, ordered: FloatArray, where: str) -> None:
+def require_reached(name: str, gear: Actuator | None, ordered: FloatArray, where: str) -> None:
     """Raises OptionError for the first of the orders (n,) to an input, in SI, that is beyond what moves it.
 
     where  they are given

@@ -20,7 +20,7 @@ from ..predictor import Predictor, cases_from, draught_of, portions, predicted
 from ..scores import window_scores
 from ..stated import no_reverse
 from ..trial import Trial
-from .asked import Approach, actuators_of, hold_reached, profile_behind
+from .asked import Approach, actuators_of, profile_behind, require_reached
 from .order_list import OrderList
 from .reading import Values, of_records
 from .result import Foretold
@@ -33,7 +33,7 @@ def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Fo
     """
     _possible(predictor, orders)
     step = sample_of(predictor.L_pp, approach.speed)
-    limits.ORDERS_STEPS.hold(orders.duration / step * predictor.n_members, orders.where, OptionError)
+    limits.ORDERS_STEPS.require(orders.duration / step * predictor.n_members, orders.where, OptionError)
     t, controls = orders.carried_out(tuple(predictor.inputs), actuators_of(predictor), approach.n, step)
     initial = np.array([0.0, 0.0, 0.0, approach.speed, 0.0, 0.0])
     found = predicted(predictor, pad([t], [controls], [initial]))
@@ -53,7 +53,7 @@ def _possible(predictor: Predictor, orders: OrderList) -> None:
     for name, gear in zip(predictor.inputs, actuators_of(predictor), strict=True):
         ordered = orders.ordered.get(name, np.zeros(0))
         where = f"{orders.where}, column '{name}'"
-        hold_reached(name, gear, ordered, where)
+        require_reached(name, gear, ordered, where)
         astern = INPUTS[name].role == "propeller" and bool((ordered < 0.0).any())
         if profile is not None and astern and (problem := no_reverse(profile, where, "order none below 0")):
             raise OptionError(problem)

@@ -16,7 +16,7 @@ def rows_of(metadata: Any, size: int, where: str, error: type[MmgtuneError], unp
 
     Raises ``error`` where the file would expand beyond the limits; ValueError where the footer contradicts itself.
     """
-    FOOTER_VALUES.hold(metadata.num_row_groups * metadata.num_columns, where, error)
+    FOOTER_VALUES.require(metadata.num_row_groups * metadata.num_columns, where, error)
     groups = [metadata.row_group(k) for k in range(metadata.num_row_groups)]
     rows: int = sum(one.num_rows for one in groups)
     if rows != metadata.num_rows or any(one.num_rows < 0 or one.total_byte_size < 0 for one in groups):
@@ -27,5 +27,5 @@ def rows_of(metadata: Any, size: int, where: str, error: type[MmgtuneError], unp
         raise error(
             Problem("the file expands far beyond what it can hold", where, why, "do not use it: ask its source")
         )
-    unpacked.hold(sum(one.total_byte_size for one in groups), where, error, "unpacked")
+    unpacked.require(sum(one.total_byte_size for one in groups), where, error, "unpacked")
     return rows

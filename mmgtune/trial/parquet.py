@@ -16,7 +16,7 @@ import numpy as np
 from .. import limits
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, TrialError, brief, kind_of, reason
-from ..files import atomic, hold_regular, path_of
+from ..files import atomic, path_of, require_regular
 from ..resources import must_be_name
 from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
@@ -106,7 +106,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     if problems:
         raise TrialError(*problems)
     written = json.dumps(facts).encode()
-    limits.FACTS_BYTES.hold(len(written), f"trial {brief(trial.id)}", TrialError)
+    limits.FACTS_BYTES.require(len(written), f"trial {brief(trial.id)}", TrialError)
     schema = pa.schema(fields, metadata={METADATA_KEY: written, DIGEST_KEY: digest(values, written)})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)
     with atomic(path, overwrite) as part:
@@ -120,7 +120,7 @@ def id_in(path: Path) -> str | None:
     import pyarrow.parquet as pq
 
     try:
-        hold_regular(path)
+        require_regular(path)
         raw = pq.ParquetFile(path, pre_buffer=False).schema_arrow.metadata or {}
     except (OSError, ValueError, pa.ArrowException):
         return None
@@ -180,9 +180,9 @@ def _read(path: Path) -> _Held:
         # ``read_table`` starts one whatever it is told.
         file = pq.ParquetFile(pa.BufferReader(content), pre_buffer=False, page_checksum_verification=True)
         rows = rows_of(file.metadata, len(content), where, TrialError)
-        limits.TRIAL_SAMPLES.hold(rows, where, TrialError)
+        limits.TRIAL_SAMPLES.require(rows, where, TrialError)
         layout = layout_of(file.schema_arrow, where)
-        limits.TRIAL_VALUES.hold(rows * layout.n_numeric, where, TrialError)
+        limits.TRIAL_VALUES.require(rows * layout.n_numeric, where, TrialError)
         wanted = layout.wanted
         table = file.read(columns=wanted, use_threads=False)
         columns = {name: numbers(table.column(name).combine_chunks()) for name in wanted}

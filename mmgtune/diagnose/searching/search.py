@@ -15,7 +15,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...backends import Integrator
 from ...fitting.box import base_of
-from ...fitting.lost import hold_simulated
+from ...fitting.lost import require_simulated
 from ...hooks import Phase
 from ...trial import Held
 from ..bench import noise as noises
@@ -118,7 +118,7 @@ def search(
     base = base_fit(bench)
     if not np.isfinite(base.chi2):
         problem = bench.problem_of(base.names).with_offsets(base.offsets)
-        hold_simulated(bench.model.profile, problem, base.unit, bench.trials)
+        require_simulated(bench.model.profile, problem, base.unit, bench.trials)
     at_end = {name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0}
     hypotheses = [*hypotheses, *(one for one in in_place if set(one.instead) <= at_end)]
     found = Found(base, base)

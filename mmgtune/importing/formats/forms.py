@@ -44,7 +44,7 @@ def form_of(log: Path) -> str:
     if content.startswith(b"PAR1"):
         return "parquet"
     if content.startswith(ZIP):
-        _hold_workbook(log)
+        _require_workbook(log)
         return "xlsx"
     if content.startswith(OLD):
         why = "it is a workbook of the older kind (.xls), or one with a password"
@@ -67,7 +67,7 @@ def form_of(log: Path) -> str:
     return "csv"
 
 
-def _hold_workbook(log: Path) -> None:
+def _require_workbook(log: Path) -> None:
     """Raise LogError for an archive that is whole, and no workbook."""
     try:
         with zipfile.ZipFile(log) as archive:

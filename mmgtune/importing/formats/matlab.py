@@ -178,7 +178,7 @@ class _Reader:
         _, raw, at = self.element(data, at)
         if not 0 < length <= 64 or len(raw) % length:
             raise _Damaged("a structure has no names of fields")
-        LOG_COLUMNS.hold(len(raw) // length, "a structure", LogError)
+        LOG_COLUMNS.require(len(raw) // length, "a structure", LogError)
         names = [raw[k : k + length].split(b"\0")[0].decode("latin-1") for k in range(0, len(raw), length)]
         if many * len(names) > MADE - self.made:
             return Other("structure")

@@ -104,7 +104,7 @@ def columns_in(held: Mapping[str, Value], path: Path, variable: str = "") -> Col
         why = "; ".join(f"'{name}' is a {kind}" for name, kind in list(other.items())[:8]) or "it is empty"
         fix = "save vectors of numbers of one length, a structure of them, or a matrix with a column each"
         raise LogError(Problem("the file holds no columns of numbers", str(path), why, fix))
-    LOG_COLUMNS.hold(len(columns), str(path), LogError)
+    LOG_COLUMNS.require(len(columns), str(path), LogError)
     if uneven:
         shown = listed([f"'{name}' ({of})" for name, of in uneven.items()], 6)
         notes.append(f"left out, as the columns have {usual} rows: {shown}")
@@ -120,7 +120,7 @@ def runs_in(held: Mapping[str, Value]) -> list[str]:
     """
     structures = _structures(held)
     fields = {path: frozenset(value) for path, value in structures.items() if _is_run(value)}
-    LOG_RUNS.hold(len(fields), "a MATLAB file", LogError)
+    LOG_RUNS.require(len(fields), "a MATLAB file", LogError)
     # Runs have most of their fields in common, as both sides of one ship have, which lack the time.
     groups = [[other for other in fields if _in_common(fields[one], fields[other])] for one in fields]
     found = max(groups, key=len, default=[])
@@ -256,7 +256,7 @@ def _of_matrix(name: str, value: FloatArray, beside: Mapping[str, Value], notes:
     if (upright := _upright(value)) is not value:
         notes.append(f"'{name}' has {value.shape[0]} rows and {value.shape[1]} columns: each row is read as a column")
         value = upright
-    LOG_COLUMNS.hold(value.shape[1], name[:80], LogError)
+    LOG_COLUMNS.require(value.shape[1], name[:80], LogError)
     if _are_dates(value):
         return {name: [_stamp(row) for row in value]}
     names = _names_beside(beside, value.shape[1])

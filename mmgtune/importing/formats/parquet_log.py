@@ -57,7 +57,7 @@ def being_read(path: Path) -> Iterator[None]:
 def schema_of(path: Path) -> Any:
     """Columns of a Parquet log by name and type.  Raises LogError for one of more columns or rows than are read."""
     file = _opened(path)
-    LOG_COLUMNS.hold(len(file.schema_arrow.names), str(path), LogError)
+    LOG_COLUMNS.require(len(file.schema_arrow.names), str(path), LogError)
     rows_of(file.metadata, path.stat().st_size, str(path), LogError)
     return file.schema_arrow
 

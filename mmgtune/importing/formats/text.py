@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import LogError, Problem, reason
-from ...files import hold_regular
+from ...files import require_regular
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from ..maps.mapping import LogMap
 from .rows import Rows, columns_named
@@ -35,7 +35,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
     """
     import pandas as pd
 
-    LOG_BYTES.hold(path.stat().st_size, str(path), LogError)
+    LOG_BYTES.require(path.stat().st_size, str(path), LogError)
     layout = look(path, log_map)
     gathered = Rows(path, log_map, layout.names, columns_named(log_map, layout.names, layout.where))
     line = layout.first + 1
@@ -100,7 +100,7 @@ class Lines(io.RawIOBase):
         n = self.file.readinto(buffer) or 0
         block = bytes(buffer[:n])
         first = min((at for at in (block.find(b"\n"), block.find(b"\r")) if at >= 0), default=n)
-        LOG_LINE.hold(self.since + first, str(self.path), LogError)
+        LOG_LINE.require(self.since + first, str(self.path), LogError)
         last = max(block.rfind(b"\n"), block.rfind(b"\r"))
         self.since = self.since + n if last < 0 else n - 1 - last
         return n
@@ -133,11 +133,11 @@ def look(path: Path, log_map: LogMap) -> Layout:
     if len(lines) <= at or not any(line.strip() for line in lines[at:]):
         why = f"it has {len(lines)} lines, of which {at} are to be skipped"
         raise LogError(Problem("the log has no rows", str(path), why, "check 'skip' in [log], and the file"))
-    LOG_LINE.hold(max(len(line) for line in lines) + 1, str(path), LogError)
+    LOG_LINE.require(max(len(line) for line in lines) + 1, str(path), LogError)
     delimiter = log_map.delimiter or _delimiter(lines[at:])
     if log_map.header:
         names = fields_of(lines[at], delimiter)
-        LOG_COLUMNS.hold(len(names), f"{path}, line {at + 1}", LogError)
+        LOG_COLUMNS.require(len(names), f"{path}, line {at + 1}", LogError)
         if all(_is_number(name) for name in names):
             why = f"the line is '{lines[at][:60]}'"
             fix = "say header = false in [log] and give columns by number, or correct 'skip'"
@@ -151,7 +151,7 @@ def look(path: Path, log_map: LogMap) -> Layout:
                 raise _too_wide(path, number, f"it has {len(fields)} fields, the header has {len(names)}")
         return Layout(names, at + 1, delimiter, f"{path}, line {at + 1}")
     width = max(len(fields_of(line, delimiter)) for line in lines[at : at + 20])
-    LOG_COLUMNS.hold(width, f"{path}, line {at + 1}", LogError)
+    LOG_COLUMNS.require(width, f"{path}, line {at + 1}", LogError)
     if log_map.fields not in (None, width):
         why = f"its rows have {width} fields, and the map is for rows of {log_map.fields}"
         fix = "use the map or preset made for this log, or correct delimiter, skip and fields in [log]"
@@ -162,7 +162,7 @@ def look(path: Path, log_map: LogMap) -> Layout:
 def start_of(path: Path) -> bytes:
     """The first bytes of a log.  Raises LogError where it cannot be opened, is empty or binary."""
     try:
-        hold_regular(path)  # it is read more than once
+        require_regular(path)  # it is read more than once
         with path.open("rb") as file:
             content = file.read(PEEK)
     except OSError as error:

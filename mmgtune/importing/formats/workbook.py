@@ -90,11 +90,11 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
     table = table_of(path, log_map, names, columns, first, "row", where)
     table.notes += sheet.notes
     empty = [table.headers[name] for name, values in table.columns.items() if not (values == values).any()]
-    hold_results(path, sheet.name, formulas_in(path, sheet.name, names, empty))
+    require_results(path, sheet.name, formulas_in(path, sheet.name, names, empty))
     return table
 
 
-def hold_results(path: Path, sheet: str, formulas: Mapping[str, str]) -> None:
+def require_results(path: Path, sheet: str, formulas: Mapping[str, str]) -> None:
     """Raise LogError for columns that hold formulas, by name, whose results the file does not hold."""
     for name, formula in formulas.items():
         why = f"a cell says {formula}, and the file does not hold what comes of it"
@@ -203,7 +203,7 @@ def _opened(path: Path, formulas: bool = False) -> Iterator[Any]:
         with zipfile.ZipFile(path) as parts:
             listed = parts.infolist()
             # What is read of a part never exceeds the size that its entry says.
-            SHEET_BYTES.hold(sum(one.file_size for one in listed), str(path), LogError)
+            SHEET_BYTES.require(sum(one.file_size for one in listed), str(path), LogError)
             if len(listed) > ENTRIES:
                 raise LogError(Problem(f"the workbook has {len(listed)} parts", str(path), f"the limit is {ENTRIES}"))
             for one in listed:
@@ -241,9 +241,9 @@ def _rows(sheet: Any, path: Path, most: int | None = None) -> list[tuple[Any, ..
     cells = 0
     for row in itertools.islice(sheet.iter_rows(values_only=True), most):
         cells += len(row) + 1
-        LOG_COLUMNS.hold(len(row), f"{path}, row {len(rows) + 1}", LogError)
-        SHEET_ROWS.hold(len(rows) + 1, str(path), LogError)
-        SHEET_CELLS.hold(cells, str(path), LogError)
+        LOG_COLUMNS.require(len(row), f"{path}, row {len(rows) + 1}", LogError)
+        SHEET_ROWS.require(len(rows) + 1, str(path), LogError)
+        SHEET_CELLS.require(cells, str(path), LogError)
         rows.append(row)
     while rows and all(cell is None for cell in rows[-1]):
         rows.pop()

@@ -65,7 +65,7 @@ def parse_map(text: str, path: Path = Path("map")) -> LogMap:
     if not isinstance(some, list) or not all(isinstance(one, dict) for one in some):
         reader.problem("'logs' is not a list of tables", "logs", fix='write [[logs]] with name = "*_turn_*"')
         some = []
-    limits.MAP_ENTRIES.hold(len(some), str(path), LogError)
+    limits.MAP_ENTRIES.require(len(some), str(path), LogError)
     parts = []
     for number, table in enumerate(some, start=1):
         part = _part(data, table, number, text, path, reader.problems)
@@ -246,7 +246,7 @@ class _Reader(TomlReader):
             one = self.text_of("log", table, key)
             return [one] if one else []
         if value and all(isinstance(one, str) and one for one in value) and len({*value}) == len(value):
-            limits.LOG_RUNS.hold(len(value), f"{self.path}, log.{key}", LogError)
+            limits.LOG_RUNS.require(len(value), f"{self.path}, log.{key}", LogError)
             return value
         why = "each is to be a name of its own"
         self.problem(f"'log.{key}' is {brief(value)}", "log", key, why, f'write {key} = ["...", "..."], or one name')
@@ -409,7 +409,7 @@ class _Reader(TomlReader):
             what = f"'{where}.recover' is for positions x and y and for the heading"
             self.problem(what, where, "recover", fix="remove it")
         parts = {key: self.column(where, table, key) for key in PARTS if key in table}
-        self.hold_parts(name, where, table)
+        self.require_parts(name, where, table)
         direction = self.choice(where, table, "direction", ("from", "to")) if quantity.points else None
         if quantity.points and "direction" not in table and "value" not in table and "column" in table:
             self.problem(
@@ -433,7 +433,7 @@ class _Reader(TomlReader):
             line=self.line(where),
         )
 
-    def hold_parts(self, name: str, where: str, table: dict[str, Any]) -> None:
+    def require_parts(self, name: str, where: str, table: dict[str, Any]) -> None:
         """Note what is wrong about columns of minutes, seconds and hemisphere."""
         given = [key for key in PARTS if key in table]
         if given and name not in HEMISPHERES:

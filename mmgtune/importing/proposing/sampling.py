@@ -168,11 +168,11 @@ def samples_of(path: Path) -> list[Sample]:
     for sample in samples:
         if len(sample.names) < 2 or not any(np.isfinite(one).sum() > 1 for one in sample.numbers):
             raise _no_table(path, len(sample.names), "none with numbers")
-        _hold_wide(sample)
+        _require_wide(sample)
     return samples
 
 
-def _hold_wide(sample: Sample) -> None:
+def _require_wide(sample: Sample) -> None:
     """Raise LogError for a log that has a row for each value, and a column that says of what it is."""
     for k, texts in enumerate(sample.texts):
         if holds_numbers(texts) or _holds_dates(texts) or np.isfinite(sample.numbers[k]).any():
@@ -198,7 +198,7 @@ def _no_table(path: Path, seen: int, but: str) -> LogError:
 
 def _made(path: Path, layout: dict[str, Any], names: Sequence[str], below: Sequence[str], texts: list[Any]) -> Sample:
     """A sample of columns as they are printed."""
-    LOG_COLUMNS.hold(len(names), str(path), LogError)
+    LOG_COLUMNS.require(len(names), str(path), LogError)
     if texts and len(texts[0]) < 2:  # be they thousands, which take long to look at
         raise _no_table(path, len(names), "with less than two rows")
     texts = [one if holds_numbers(one) or _holds_dates(one) else one.astype("string").str.strip() for one in texts]
@@ -271,7 +271,7 @@ def _has_commas(column: Any) -> bool:
 def _of_text(path: Path) -> Sample:
     import pandas as pd
 
-    LOG_BYTES.hold(path.stat().st_size, str(path), LogError)
+    LOG_BYTES.require(path.stat().st_size, str(path), LogError)
     content = start_of(path)
     encoding = _encoding(content)
     refuse_binary(path, content, LogMap("", Path(), encoding=encoding))
@@ -279,7 +279,7 @@ def _of_text(path: Path) -> Sample:
     lines = re.split(r"\r\n|\n|\r", text)
     if len(content) == PEEK:
         lines.pop()
-    LOG_LINE.hold(max((len(line) for line in lines), default=0) + 1, str(path), LogError)
+    LOG_LINE.require(max((len(line) for line in lines), default=0) + 1, str(path), LogError)
     whole = lines[:400]
     mark, decimal = _separator(whole)
     rows = [fields_of(line, mark) for line in whole]
@@ -380,7 +380,7 @@ def _head(rows: Sequence[Sequence[Any]]) -> tuple[list[str], int | None]:
 def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
     import pandas as pd
 
-    from ..formats.workbook import as_text, formulas_in, hold_results, sheet_of
+    from ..formats.workbook import as_text, formulas_in, require_results, sheet_of
 
     sheet = sheet_of(path, name)
     start = [[as_text(cell) or "" for cell in row] for row in sheet.rows[:HEADING]]
@@ -393,7 +393,7 @@ def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
     ]
     empty = [one for one, text in zip(names, texts, strict=True) if one and not text.notna().any()]
     formulas = formulas_in(path, sheet.name, names, empty)
-    hold_results(path, sheet.name, {name: one for name, one in formulas.items() if quantity_named(name)})
+    require_results(path, sheet.name, {name: one for name, one in formulas.items() if quantity_named(name)})
     made = _made(path, layout, names, below, texts)
     idle = [f"'{one}'" for one in formulas]
     return replace(made, notes=[f"formulas without results are left out: {listed(idle, 6)}"] if idle else [])

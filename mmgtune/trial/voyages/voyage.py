@@ -13,7 +13,7 @@ import numpy as np
 from ... import limits
 from ...arrays import FloatArray
 from ...errors import Problem, TrialError, reason
-from ...files import hold_regular
+from ...files import require_regular
 from ..digest import DIGEST_KEY, digest_of
 from ..footer import rows_of
 from ..metadata import facts_of
@@ -149,9 +149,9 @@ def open_voyage(path: Path | str) -> Voyage:
         schema = file.schema_arrow
     except (OSError, ValueError, pa.ArrowException) as error:
         raise unreadable(b"PAR1", where, error) from error
-    limits.VOYAGE_ROWS.hold(n_rows, where, TrialError)
+    limits.VOYAGE_ROWS.require(n_rows, where, TrialError)
     layout = layout_of(schema, where)
-    limits.VOYAGE_COLUMNS.hold(layout.n_numeric, where, TrialError)
+    limits.VOYAGE_COLUMNS.require(layout.n_numeric, where, TrialError)
     metadata: Mapping[bytes, bytes] = schema.metadata or {}
     refuse_log(path, layout.names, facts=METADATA_KEY in metadata)
     facts, problems = facts_of(metadata.get(METADATA_KEY), path, layout.names)
@@ -185,7 +185,7 @@ def _opened(path: Path) -> Any:
     import pyarrow.parquet as pq
 
     try:
-        hold_regular(path)
+        require_regular(path)
         with path.open("rb") as file:
             begins = file.read(4)
     except OSError as error:

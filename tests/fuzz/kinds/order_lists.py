@@ -31,7 +31,7 @@ def make(rng: np.random.Generator) -> Files:
 def run(folder: Path) -> str:
     """Read it and carry it out; what is carried out is finite and within the limits of what moves it."""
     orders = read_orders(folder / "orders.csv", INPUTS)
-    limits.ORDERS_STEPS.hold(orders.duration, "orders", OptionError)
+    limits.ORDERS_STEPS.require(orders.duration, "orders", OptionError)
     t, controls = orders.carried_out(INPUTS, (None, Actuator(-0.6, 0.6, 0.05)), 1.0, 1.0)
     assert (np.diff(t) > 0.0).all()
     assert np.isfinite(controls).all()
