@@ -15,10 +15,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from .arguments import TrialsGiven, trials_of
 from .bands import Pooled, WindowScore, pooled
 from .displayed import Brief, Displayed
 from .errors import OptionError, Problem, closest
-from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
 from .options.choice import must_be

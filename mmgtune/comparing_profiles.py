@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import ShipGiven, ship_of
 from .arrays import FloatArray
 from .displayed import Displayed
 from .errors import OptionError, Problem
-from .given import ShipGiven, ship_of
 from .motions import breakdown
 from .options import SimulateOptions
 from .physics.prime import force_unit, moment_unit

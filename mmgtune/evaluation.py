@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import ShipGiven, TrialsGiven, some_of
 from .arrays import FloatArray
 from .backends import STATES, Integrator
 from .displayed import Plotted, inert
 from .errors import TrialError, must_be_a
-from .given import ShipGiven, TrialsGiven, some_of
 from .manoeuvres import Track, manoeuvre_kind, turning_indices, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .measures import UNITS, Reference, distance_measures, reference_of

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import ShipGiven, ship_of
 from .arrays import FloatArray
 from .displayed import Displayed
 from .errors import OptionError, Problem
-from .given import ShipGiven, ship_of
 from .inputs import INPUTS
 from .networks import named_ship
 from .options.choice import must_be

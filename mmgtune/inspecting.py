@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from .arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from .errors import OptionError, Problem
-from .given import ShipGiven, TrialsGiven, ship_of, trials_of
 from .motions import trial_indices
 from .resources import profile_names
 from .trial import TrialSet, another_ship

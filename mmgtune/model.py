@@ -9,11 +9,11 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import ShipGiven, ship_of
 from .arrays import FloatArray, numbers_of
 from .components import Component
 from .effects import ClockEffect, CoefficientsEffect, Effect
 from .errors import OptionError, Problem, ProfileError, all_of, among, brief
-from .given import ShipGiven, ship_of
 
 E = TypeVar("E", bound=Effect)
 

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import ShipGiven, ship_of
 from .arrays import FloatArray, numbers_of, runs_of_true
 from .backends import STATES, Integrator, LaneModel
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, TrialError, among, kind_of, must_be_a
-from .given import ShipGiven, ship_of
 from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of

@@ -12,15 +12,15 @@ from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 
+from .arguments import Found, ship_of
 from .arrays import BoolArray, FloatArray, IntArray
 from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
 from .circumstances import notes_on
 from .displayed import Brief
 from .errors import OptionError, Problem, brief, kind_of
-from .foreign import RETURNED, lacking, require_described, require_predicted
-from .given import Found, ship_of
 from .model import Model
 from .physics.quantities import State, Surroundings
+from .predictor_checks import RETURNED, lacking, require_described, require_predicted
 from .profile import ShipProfile
 from .trial import Trial, TrialSet, another_ship, surroundings
 

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import ShipGiven, TrialsGiven, some_of
 from .arrays import FloatArray
 from .displayed import Brief
 from .errors import TrialError
-from .given import ShipGiven, TrialsGiven, some_of
 from .inputs import INPUTS
 from .manoeuvres import (
     Track,

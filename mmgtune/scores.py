@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import ShipGiven, TrialsGiven, some_of
 from .arrays import FloatArray, IntArray
 from .backends import STATES, Integrator
 from .bands import WindowScore, score_window
@@ -16,7 +17,6 @@ from .displayed import Brief
 from .drawing_anew import interval_of
 from .errors import OptionError, Problem, brief, kind_of
 from .evaluation import TrialRecord, records
-from .given import ShipGiven, TrialsGiven, some_of
 from .limits import as_float, is_real
 from .model import Model
 from .motions import begun

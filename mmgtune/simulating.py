@@ -10,12 +10,12 @@ from pathlib import Path
 from types import NoneType
 from typing import Any, SupportsIndex, overload
 
+from .arguments import ShipGiven, TrialsGiven, of_one_ship
 from .backends import Integrator
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, among, brief, must_be_a
 from .evaluation import TrialRecord, evaluate
 from .files import all_or_none, path_of, refuse_existing
-from .given import ShipGiven, TrialsGiven, of_one_ship
 from .inputs import INPUTS
 from .manoeuvres.criteria import Criterion, check_stopping
 from .manoeuvres.stopping import stopping_indices
@@ -29,7 +29,7 @@ from .options.orders import ORDERS
 from .orders import Helmsman, Sailing, Straight, TurningOrder, ZigzagOrder, possible_approach, run_manoeuvres, sample_of
 from .predictor import PhysicsPredictor, Predictor, as_predictor, noted, profile_of
 from .profile import ShipProfile
-from .stated import no_reverse
+from .stated_indices import no_reverse
 from .steering import APPROACH, STEP
 from .trial import Coverage, write_trial
 from .units import DEG, quantity

@@ -8,12 +8,12 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from .arguments import ShipGiven, TrialsGiven, trials_of
 from .arrays import FloatArray
 from .bands import Pooled, pooled, pooled_by
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, among, brief
 from .first_states import J_of_noise, estimated, in_words
-from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
 from .networks import named_ship
 from .objective import make_objective, spread, varying
@@ -23,7 +23,7 @@ from .predictor import Predictor, as_predictor, noted, particles_of, profile_of,
 from .profile.doubts import Doubt
 from .repeating import Repeated, document, repetitions
 from .scores import L_MSE, TrialScore, score, summary, window_scores
-from .stated import IndexComparison, compare_stated, physics_of, possible
+from .stated_indices import IndexComparison, compare_stated, physics_of, possible
 from .trial import Trial, TrialSet, oddities
 
 Scorable = ShipGiven | Model | Predictor

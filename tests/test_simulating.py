@@ -13,7 +13,7 @@ from mmgtune.motions import Motion, as_trial, breakdown
 from mmgtune.options import SimulateOptions
 from mmgtune.predictor import PhysicsPredictor
 from mmgtune.resources import folder
-from mmgtune.stated import compare_stated
+from mmgtune.stated_indices import compare_stated
 from mmgtune.trial import TrialSet
 from mmgtune.trial.index_trial import IndexTrial, Stated
 from tests.command import typed

@@ -13,7 +13,7 @@ from ..model import Model
 from ..objective import default_scales
 from ..predictor import PhysicsPredictor, Predictor, as_predictor
 from ..profile import ShipProfile
-from ..stated import compare_stated, possible
+from ..stated_indices import compare_stated, possible
 from ..trial import IndexTrial, Trial
 from ..units import DEG
 

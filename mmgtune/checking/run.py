@@ -9,9 +9,9 @@ from importlib.metadata import version
 from pathlib import Path
 from types import NoneType
 
+from ..arguments import ShipGiven, TrialsGiven, trials_of
 from ..backends import Integrator
 from ..errors import OptionError, Problem, all_of, among, brief, kind_of, must_be_a
-from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
 from ..motions import orders_of
 from ..predictor import PhysicsPredictor, Predictor

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven
 from ..backends import Integrator
 from ..errors import OptionError, Problem
-from ..given import ShipGiven
 from ..model import Model
 from ..networks import named_ship
 from ..networks.naming import file_of

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of
 from ..fitting.box import width_words
 from ..fitting.extending import with_width
 from ..fitting.planning import Plan, can_be_tried, evaluation_seconds, whole
 from ..fitting.setting import in_pieces
-from ..given import ShipGiven, TrialsGiven, ship_of
 from ..options import DiagnoseOptions
 from ..run_files import DIAGNOSIS, DRAWN_UP, MOTIONS, PROFILE
 from ..trial import VoyageSet

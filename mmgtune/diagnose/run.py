@@ -11,21 +11,21 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of
 from ..circumstances import reversals, reversed_in
 from ..errors import ProfileError, must_be_a
 from ..files import kept_in
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
 from ..fitting.setting import in_pieces
-from ..given import ShipGiven, TrialsGiven, ship_of
 from ..hooks import Hooks
-from ..made_from import identity_of, make_provenance
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..options.choice import must_be
 from ..options.scoring import WINDOW
 from ..phrases import capital
 from ..profile import ShipProfile, with_all_effects
+from ..run_provenance import identity_of, make_provenance
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, another_ship, oddities
 from ..trial.checks.set_checks import turn_away

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..arrays import FloatArray
 from ..bands import Pooled
 from ..circumstances import notes_on
@@ -18,10 +19,8 @@ from ..documents import finite, finite_values
 from ..errors import OptionError, Problem, must_be_a
 from ..evaluation import TrialRecord, evaluate
 from ..files import kept_in
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..inputs import INPUTS
-from ..made_from import identity_of, make_provenance
 from ..model import Model
 from ..objective import spread
 from ..options import FitOptions, LeaveOutOptions
@@ -33,8 +32,9 @@ from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repetitions
 from ..run_files import LEFT_OUT, MOTIONS
+from ..run_provenance import identity_of, make_provenance
 from ..scores import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
-from ..stated import IndexComparison, compare_stated
+from ..stated_indices import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, another_ship, oddities
 from ..writing_results import place_for, write_record

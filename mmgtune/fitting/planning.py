@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends import WIDTH, get_ready_backend
 from ..backends.compiled import cores
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import FitOptions, LeaveOutOptions, SweepOptions
 from ..profile import ShipProfile
 from ..run_files import DRAWN_UP, FIT, HISTORY, LEFT_OUT, MOTIONS, PROFILE, SWEEP

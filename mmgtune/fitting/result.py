@@ -22,7 +22,7 @@ from ..phrases import capital
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
 from ..profile.doubts import in_words
-from ..stated import IndexComparison
+from ..stated_indices import IndexComparison
 from ..trial import Coverage, another_ship
 from .box import Box, width_words
 from .certificate import Certificate

@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..arrays import FloatArray
 from ..errors import all_of, must_be_a
 from ..files import kept_in
 from ..first_states import J_of_noise
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
-from ..made_from import identity_of, make_provenance
 from ..objective import Objective
 from ..options import FitOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
-from ..stated import IndexComparison, compare_stated
+from ..run_provenance import identity_of, make_provenance
+from ..stated_indices import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, oddities
 from .certificate import certify

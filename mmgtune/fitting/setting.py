@@ -15,7 +15,7 @@ from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, TuningOptions
 from ..profile import ShipProfile
-from ..stated import possible
+from ..stated_indices import possible
 from ..trial import Coverage, TrialSet
 from .box import Box, choose_targets, make_box
 from .one_sided import tied

@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..displayed import Plotted
 from ..documents import finite_values
 from ..errors import must_be_a
 from ..files import kept_in
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
-from ..made_from import identity_of, make_provenance
 from ..options import SweepOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
 from ..run_files import SWEEP
+from ..run_provenance import identity_of, make_provenance
 from ..trial import TrialSet
 from ..writing_results import place_for, write_record
 from .box import A_R

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from ..arrays import FloatArray
-from ..stated import residuals
+from ..stated_indices import residuals
 from ..trial import IndexTrial
 
 if TYPE_CHECKING:

@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends.compiled import cores
 from ..backends.twins import accelerated, jax_module
 from ..documents import finite
 from ..errors import OptionError, Problem, must_be_a
 from ..files import kept_in
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..networks.ensemble import Ensemble, EnsemblePredictor, Part
 from ..networks.feedforward import Layers, Standards

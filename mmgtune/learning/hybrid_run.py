@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends import STATES
 from ..errors import OptionError, Problem, must_be_a
 from ..files import kept_in
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..model import Model
 from ..networks.hybrid import Hybrid, HybridPredictor

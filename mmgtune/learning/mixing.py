@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import limits
+from ..arguments import TrialsGiven, trials_of
 from ..comparing_models import ModelComparison, compare_models
 from ..documents import finite
 from ..errors import OptionError, Problem, brief, kind_of, must_be_a, reason
-from ..given import TrialsGiven, trials_of
 from ..networks import (
     HybridPredictor,
     Mixture,

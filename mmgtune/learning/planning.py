@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends.compiled import cores
 from ..fitting import Plan
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions
 from ..phrases import counted
 from ..run_files import ENSEMBLE, HYBRID, LEARNING, MODEL, REPORT_HTML

@@ -7,10 +7,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..made_from import facts_of_profile
 from ..options import Options
 from ..profile import ShipProfile
 from ..provenance import made_by
+from ..run_provenance import facts_of_profile
 from ..trial import Trial, TrialSet
 
 

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends.twins import accelerated
 from ..documents import finite
 from ..errors import OptionError, Problem, must_be_a
 from ..files import kept_in
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..networks import Network, NetworkPredictor
 from ..networks.recurrent import Scales, Weights

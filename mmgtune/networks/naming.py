@@ -6,9 +6,9 @@ import hashlib
 from pathlib import Path
 from typing import TypeVar, cast
 
+from ..arguments import Found, ship_of
 from ..backends import Integrator
 from ..errors import ProfileError
-from ..given import Found, ship_of
 from ..particles import ParticlePredictor, Particles, load_particles
 from ..predictor import PhysicsPredictor, Predictor
 from ..profile import ShipProfile

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, ship_of
 from ..arrays import FloatArray
 from ..backends import get_ready_backend
 from ..errors import parts_of
-from ..given import ShipGiven, ship_of
 from ..model import Model
 from ..motions import Motion, sized
 from .helmsmen import Helmsman, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, in_radians

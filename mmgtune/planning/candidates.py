@@ -15,7 +15,7 @@ from ..orders import Helmsman, Sailing, SpiralOrder, Straight, TurningOrder, Wea
 from ..predicting.asked import Approach
 from ..profile import ShipProfile
 from ..simulating import turn_name, zigzag_name
-from ..stated import no_reverse
+from ..stated_indices import no_reverse
 from ..trial import Trial
 from ..trial.schema import MOTION
 from ..units import DEG

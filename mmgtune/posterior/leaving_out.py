@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..bands import Pooled, WindowScore, pooled, pooled_by
 from ..fitting import BandsLeftOut, LeftOut, leave_out
 from ..fitting.extending import settled
 from ..fitting.journal import journalled, remembered
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
-from ..made_from import identity_of, make_provenance
 from ..options import LeaveOutOptions, ParticleOptions, PosteriorOptions
 from ..profile import ShipProfile, tuned
+from ..run_provenance import identity_of, make_provenance
 from ..scores import window_scores
 from ..threads import blas_on_one_thread
 from ..trial import Trial

@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends import get_backend, get_ready_backend
 from ..fitting.planning import ROUGHLY, Plan
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..options import PosteriorOptions
 from ..phrases import counted

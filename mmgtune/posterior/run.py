@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import ShipGiven, TrialsGiven, list_of, ship_of, trials_of
 from ..arrays import FloatArray
 from ..backends import get_backend
 from ..components import split_name
@@ -17,15 +18,14 @@ from ..errors import Problem, ProfileError, TrialError, must_be_a
 from ..files import kept_in
 from ..fitting.journal import journalled
 from ..fitting.lost import runs_away
-from ..given import ShipGiven, TrialsGiven, list_of, ship_of, trials_of
 from ..hooks import Hooks
-from ..made_from import identity_of, make_provenance
 from ..options import PosteriorOptions
 from ..options.choice import must_be
 from ..particles import SO_FAR, Particles
 from ..phrases import capital, counted
 from ..profile import ShipProfile, tuned
 from ..run_files import POSTERIOR_JOURNAL
+from ..run_provenance import identity_of, make_provenance
 from ..threads import blas_on_one_thread
 from ..trial import Trial, another_ship
 from ..trial.by_hand import ship_of_all

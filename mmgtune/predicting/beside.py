@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ..arguments import TrialsGiven
 from ..errors import OptionError, must_be_a
 from ..fitting import FitResult, write_run
-from ..given import TrialsGiven
 from ..hooks import Hooks
 from ..options import PredictOptions
 from ..phrases import counted

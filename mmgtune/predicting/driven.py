@@ -18,7 +18,7 @@ from ..motions import Motion
 from ..orders import sample_of
 from ..predictor import Predictor, cases_from, draught_of, portions, predicted
 from ..scores import window_scores
-from ..stated import no_reverse
+from ..stated_indices import no_reverse
 from ..trial import Trial
 from .asked import Approach, actuators_of, profile_behind, require_reached
 from .order_list import OrderList

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import cast
 
+from ..arguments import ShipGiven, TrialsGiven, of_one_ship
 from ..bands import widest
 from ..errors import OptionError, Problem
-from ..given import ShipGiven, TrialsGiven, of_one_ship
 from ..model import Model
 from ..networks import named_ship
 from ..options import PredictOptions

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import trials_of
 from ..arrays import FloatArray
 from ..backends import Cases
 from ..bands import Pooled
@@ -18,15 +19,14 @@ from ..circumstances import acts_on_surroundings, extremes, notes
 from ..errors import OptionError, Problem, TrialError, must_be_a
 from ..files import kept_in
 from ..fitting.journal import journalled, remembered
-from ..given import trials_of
 from ..hooks import Hooks
-from ..made_from import facts_of_profile
 from ..networks.naming import sha256_of
 from ..objective import spread
 from ..options import VoyageOptions
 from ..options.choice import must_be
 from ..predictor import PhysicsPredictor, Predictor, Uncertain, draught_of, of_another_ship, profile_of
 from ..provenance import made_by
+from ..run_provenance import facts_of_profile
 from ..threads import blas_on_one_thread
 from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
 from ..trial.voyages.windows import Window, mean_speed, rest_speed

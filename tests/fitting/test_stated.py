@@ -13,7 +13,7 @@ from mmgtune.model import Model
 from mmgtune.motions import as_trial
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile, tuned
-from mmgtune.stated import UNREACHED, residuals, simulated
+from mmgtune.stated_indices import UNREACHED, residuals, simulated
 from mmgtune.trial import TrialSet, load_trials, write_trial
 from mmgtune.trial.index_trial import IndexTrial, Stated
 from mmgtune.units import DEG

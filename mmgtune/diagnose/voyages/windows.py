@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ...arguments import TrialsGiven, trials_of
 from ...arrays import FloatArray
 from ...errors import Problem, TrialError
-from ...given import TrialsGiven, trials_of
 from ...model import Model
 from ...options import DiagnoseOptions, VoyageOptions
 from ...profile import ShipProfile
