@@ -21,7 +21,7 @@ from .progress import Progress
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
     from ..diagnose.causes.by_run import ByRun
-    from ..diagnose.voyages.differences import Difference
+    from ..diagnose.voyages.difference import Difference
 
 
 class Left:

@@ -47,7 +47,8 @@ from .result import Diagnosis
 from .searching.narrow import narrow_box
 from .searching.refit import ENOUGH, Refit
 from .searching.search import Found, against_its_kin, doubtful_beginning, price_of, search
-from .voyages.differences import LEG_NAMES, Difference, differences
+from .voyages.difference import LEG_NAMES, Difference
+from .voyages.differences import differences
 from .voyages.windows import Choice, looked_at, with_hull_held
 
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.voyages.differences import QUANTITIES, Difference
+from mmgtune.diagnose.voyages.difference import QUANTITIES, Difference
 from mmgtune.report.figures.differences import axis_words, differences
 from mmgtune.report.figures.plot import Bar, Dots, Line
 

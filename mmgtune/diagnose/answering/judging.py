@@ -34,7 +34,7 @@ from ..searching.refit import WORTH, Refit, kin_among
 from ..searching.search import Found, Step, rivals_of, step_of
 from ..signatures.intervals import Estimate, estimates
 from ..signatures.retuned import retuned, unlike_any
-from ..voyages.differences import Difference
+from ..voyages.difference import Difference
 from ..voyages.windows import Choice
 from .detecting import detectability
 from .separate import Suggestion, suggest

@@ -17,7 +17,7 @@ from ..evidence.whereabouts import Whereabouts
 from ..record import Record, kind_of, record_of
 from ..searching.instead import Instead
 from ..signatures.retuned import Retuned
-from ..voyages.differences import Difference
+from ..voyages.difference import Difference
 from ..voyages.windows import Choice
 from .separate import Suggestion
 
