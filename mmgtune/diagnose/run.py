@@ -34,7 +34,7 @@ from ..trial.schema import MOTION
 from .answering.ended import in_words as ends_in_words
 from .answering.ended import within_range
 from .answering.judging import Judge, leaves_much_open
-from .answering.jumped import in_parts
+from .answering.jumped import beginnings_in_words, from_the_track_on, in_parts
 from .answering.jumped import in_words as jumps_in_words
 from .bench.hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
 from .bench.workbench import Workbench, make_workbench
@@ -160,8 +160,10 @@ def _looked_at(
     odd += oddities(trials.trials, profile.L_pp) if choice is None else []
     odd += _derived(trials.trials)
     whole = trials.trials
+    off: dict[str, float] = {}
     jumped: dict[str, float] = {}
     if choice is None and options.restart is None:
+        trials, off = from_the_track_on(trials)
         trials, jumped = in_parts(trials)
     trials = in_pieces(trials, options.fit_options())
     trials, ended = within_range(trials, whole)
@@ -205,6 +207,8 @@ def _looked_at(
     beside = [f"{told}: runs are taken in parts there, which begin where their own samples say."] if told else []
     told = capital(ends_in_words(ended))
     beside += [f"{told}: what it shows there is left out."] if told else []
+    told = capital(beginnings_in_words(off, len(whole)))
+    beside += [f"{told}, as of a receiver that is late: runs begin after these."] if told else []
     astern = [f"{capital(said)}." for said in reversals(bench.model, seen)]
     odd += astern
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))

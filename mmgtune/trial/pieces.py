@@ -43,6 +43,17 @@ def divided(trial: Trial, rows: Sequence[int]) -> list[Trial]:
     return found
 
 
+def begun_at(trial: Trial, row: int) -> Trial:
+    """The trial from its first complete sample at a row or after it on; as it is where that leaves fewer than
+    FEWEST_SAMPLES samples."""
+    whole = np.flatnonzero(np.isfinite(trial.motion).all(axis=1))
+    first = whole[whole >= row]
+    if not len(first) or trial.n_samples - first[0] < FEWEST_SAMPLES:
+        return trial
+    columns = {name: getattr(trial, name)[first[0] :] for name in ATTRIBUTES.values()}
+    return replace(trial, extra={name: values[first[0] :] for name, values in trial.extra.items()}, **columns)
+
+
 def cuts(
     t: FloatArray, whole: IntArray, length: float, every: float | None = None, *, more: bool = False
 ) -> tuple[list[tuple[int, int]], int]:

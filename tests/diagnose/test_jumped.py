@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose import diagnose, write_diagnosis
-from mmgtune.diagnose.answering.jumped import in_parts, in_words
+from mmgtune.diagnose.answering.jumped import beginnings_in_words, from_the_track_on, in_parts, in_words
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
 from mmgtune.report import render
-from mmgtune.trial import TrialSet, load_trials
+from mmgtune.trial import TrialSet, check_trial, load_trials
+from mmgtune.trial.pieces import begun_at
 from tests.hidden.plant import simulate, write
 
 OPTIONS = DiagnoseOptions(effects=("gyro-drift", "heading-bias", "current", "rudder-gain"))
@@ -55,6 +56,61 @@ def test_a_receiver_that_jumps_all_the_time_is_left(sailed):
     rows = range(60, sailed.trials[id].n_samples - 60, 60)
     shaken = with_jump(sailed, id, *((row, 20.0 * (-1.0) ** k) for k, row in enumerate(rows)))
     assert in_parts(shaken) == (shaken, {})
+
+
+def standing_first(trials: TrialSet, seconds: float) -> TrialSet:
+    """The trials logged by a receiver that is late, and stands where each log begins."""
+
+    def late(one):
+        x, y = (np.interp(one.t - seconds, one.t, of) for of in (one.x, one.y))
+        return replace(one, x=x, y=y)
+
+    return replace(trials, trials={id: late(one) for id, one in trials.trials.items()})
+
+
+@pytest.mark.parametrize(("seconds", "rows"), [(1.5, 2), (2.6, 3)])
+def test_first_positions_that_stand_still_are_left_out(sailed, seconds, rows):
+    late = standing_first(sailed, seconds)
+    kept, off = from_the_track_on(late)
+    assert set(off) == set(late.trials)
+    for id, one in kept.trials.items():
+        whole = late.trials[id]
+        assert off[id] == pytest.approx(seconds * whole.u[0], abs=1.0)
+        left_out = whole.n_samples - one.n_samples
+        assert rows <= left_out <= 4
+        assert np.array_equal(one.x, whole.x[left_out:])
+        assert (one.id, one.part_of, one.t[0]) == (id, "", whole.t[left_out])
+        assert any("off the track by" in found.what for found in check_trial(whole))
+    assert from_the_track_on(sailed) == (sailed, {})
+    assert in_parts(late) == (late, {})
+    assert not any("off the track" in found.what for one in sailed.trials.values() for found in check_trial(one))
+
+
+def test_of_what_would_be_no_trial_then_nothing_is_left_out(sailed):
+    one = sailed.trials["turn_p20"]
+    assert begun_at(one, one.n_samples - 1) is one
+
+
+@pytest.mark.parametrize(
+    ("off", "said"),
+    [
+        ({}, ""),
+        ({"a": 12.0}, "the first positions are off the track by 12 m in 1 of 8 runs"),
+        ({"a": 12.0, "b": 11.02}, "the first positions are off the track by 11 to 12 m in 2 of 8 runs"),
+    ],
+)
+def test_first_positions_in_words(off, said):
+    assert beginnings_in_words(off, 8) == said
+
+
+@pytest.mark.long
+def test_a_late_receiver_that_stands_first_is_late(sailed):
+    options = DiagnoseOptions(effects=("position-latency", "speed-scale", "log-zero", "antenna", "clock-offset"))
+    result = diagnose(load_profile("suzaku"), standing_first(sailed, 1.5), options)
+    assert [cause.tag for cause in result.causes] == ["position-latency"]
+    assert result.verdict == "found"
+    assert "1.5" in result.sentence()
+    assert any("runs begin after these" in one for one in result.warnings)
 
 
 @pytest.mark.long

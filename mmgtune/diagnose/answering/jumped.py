@@ -1,12 +1,15 @@
-"""Runs whose logged position jumps, taken in parts: each part begins where its own first samples say."""
+"""Runs whose logged position jumps, taken in parts: each part begins where its own first samples say.  What is off the
+track before the first of them is left out."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from ...phrases import listed
 from ...trial import TrialSet
-from ...trial.checks.position_jumps import position_jumps
+from ...trial.checks.position_jumps import first_positions_off, position_jumps
+from ...trial.pieces import begun_at
 
 MOST = 3
 """Jumps of a run up to which it is taken in parts: a receiver that jumps more often is another matter."""
@@ -28,6 +31,25 @@ def in_parts(trials: TrialSet) -> tuple[TrialSet, dict[str, float]]:
         return trials, {}
     divided = trials.divided({id: [row for row, _ in found] for id, found in jumps.items()})
     return divided, {id: max(size for _, size in found) for id, found in jumps.items()}
+
+
+def from_the_track_on(trials: TrialSet) -> tuple[TrialSet, dict[str, float]]:
+    """The trials without first positions that are off the track, and how far they are, by run [m]; windows as they
+    are."""
+    if any(trial.part_of for trial in trials.trials.values()):
+        return trials, {}
+    off = {id: found for id, trial in trials.trials.items() if (found := first_positions_off(trial))}
+    kept = {id: begun_at(trial, off[id][0]) if id in off else trial for id, trial in trials.trials.items()}
+    return replace(trials, trials=kept) if off else trials, {id: size for id, (_, size) in off.items()}
+
+
+def beginnings_in_words(off: Mapping[str, float], runs: int) -> str:
+    """That first positions are off, and how far; "" for none."""
+    if not off:
+        return ""
+    least, largest = (f"{end(off.values()):.3g}" for end in (min, max))
+    by = largest if least == largest else f"{least} to {largest}"
+    return f"the first positions are off the track by {by} m in {len(off)} of {runs} runs"
 
 
 def in_words(jumped: Mapping[str, float]) -> str:

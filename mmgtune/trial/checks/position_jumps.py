@@ -18,6 +18,12 @@ FEWEST, MOST = 5, 100
 """Samples of such a line."""
 BEYOND = 9.0
 """How many times the usual misfit of two neighbouring lines a step exceeds."""
+FIRST, AT_ONCE = 4.0, 0.5
+"""Time [s] at the beginning in which positions may be off, and way [s] that the first of them exceeds: to leave them
+out costs nothing."""
+AWAY, NEAR = 6.0, 2.0
+"""How many times the usual misfit of the line that follows the first position exceeds where it is off, and up to which
+those after it are of the track."""
 WAY = 1.0
 """Way [s] at the ship's speed that a step exceeds: what is smaller hardly matters."""
 
@@ -29,22 +35,11 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     meet there.  Drifts, currents and biases of the velocities are lines themselves and pass.  Where a few velocities
     are missing the way goes on between their neighbours; longer gaps are not judged, and a single outlier is no jump.
     """
-    dt = np.diff(trial.t)
-    n = int(np.clip(np.ceil(SPAN / np.median(dt)), FEWEST, MOST))
-    if trial.n_samples < 6 * n:
+    n = _samples(trial)
+    left = _without_way(trial, n)
+    if left is None:
         return []
-    made = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
-    ways = bridged(trial.t[:-1], *made)
-    if ways is None:
-        return []
-    left = [
-        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(way * dt)])
-        for position, way in zip((trial.x, trial.y), ways.T, strict=True)
-    ]
     ahead = _line_end(n)
-    for first, last in runs_of_true(np.isnan(made[0])):
-        for one in left if last - first > n else ():
-            one[first : last + 1] = np.nan
     # Rows k + n: what lies before predicts the middle of the step to row k + n, and so does what lies after.
     steps = [
         np.lib.stride_tricks.sliding_window_view(one[n:], n) @ ahead[::-1]
@@ -54,10 +49,62 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     size = np.hypot(*steps)
     # A position that stands for several samples, as of a slow receiver, makes lines of steps; its way in them is usual.
     usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf
-    speed = np.hypot(trial.u, trial.v_m)
-    least = max(BEYOND * usual, WAY * float(np.nanpercentile(speed, 90.0)))
+    least = max(BEYOND * usual, WAY * _fast(trial))
     found = _peaks(np.nan_to_num(size), least, n)
     return [(k + n, float(size[k])) for k in found if _stays([one[k : k + 2 * n] for one in left], 0.5 * least)]
+
+
+def first_positions_off(trial: Trial) -> tuple[int, float] | None:
+    """The row from which the track is what it goes on as, and how far [m] off its first position is; None where the
+    first is of the track.
+
+    A receiver that is late, or that only begins to tell, stands where the log begins.
+    """
+    n = _samples(trial)
+    left = _without_way(trial, n)
+    if left is None:
+        return None
+    most = int(np.ceil(FIRST / np.median(np.diff(trial.t))))
+    k = np.arange(n) - 0.5 * (n - 1)
+    off = []
+    for row in range(most):  # the value of the line ``most - row`` samples before it begins
+        ahead = 1.0 / n + k * (-0.5 * (n - 1) - (most - row)) / float(k @ k)
+        lines = [np.lib.stride_tricks.sliding_window_view(one[most:], n) @ ahead for one in left]
+        ends = [one[row : row + len(line)] for one, line in zip(left, lines, strict=True)]
+        off.append(np.hypot(*(end - line for end, line in zip(ends, lines, strict=True))))
+    usual = float(np.nanmedian(off[0])) if np.isfinite(off[0]).any() else np.inf
+    if not float(off[0][0]) > max(AWAY * usual, AT_ONCE * _fast(trial)):
+        return None
+    return max(row for row, one in enumerate(off) if float(one[0]) > NEAR * usual) + 1, float(off[0][0])
+
+
+def _samples(trial: Trial) -> int:
+    """Samples of a line."""
+    return int(np.clip(np.ceil(SPAN / np.median(np.diff(trial.t))), FEWEST, MOST))
+
+
+def _fast(trial: Trial) -> float:
+    """Speed [m/s] that the ship hardly exceeds."""
+    return float(np.nanpercentile(np.hypot(trial.u, trial.v_m), 90.0))
+
+
+def _without_way(trial: Trial, n: int) -> list[FloatArray] | None:
+    """Positions north and east (n_samples,) less the way that the velocities make; None where the record is shorter
+    than six lines of n samples, or says nothing of its velocities."""
+    if trial.n_samples < 6 * n:
+        return None
+    made = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
+    ways = bridged(trial.t[:-1], *made)
+    if ways is None:
+        return None
+    left = [
+        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(way * np.diff(trial.t))])
+        for position, way in zip((trial.x, trial.y), ways.T, strict=True)
+    ]
+    for first, last in runs_of_true(np.isnan(made[0])):
+        for one in left if last - first > n else ():
+            one[first : last + 1] = np.nan
+    return left
 
 
 def _stays(around: list[FloatArray], least: float) -> bool:
@@ -106,21 +153,36 @@ def _peaks(size: FloatArray, least: float, apart: int) -> list[int]:
 
 
 def jump_findings(trial: Trial, where: str) -> list[Finding]:
-    """A warning where the position jumps, with the largest step."""
+    """Warnings where the position jumps, with the largest step, and where the first positions are off."""
+    begun = first_positions_off(trial)
+    told = []
+    if begun:
+        row, size = begun
+        first = "the first position is" if row == 1 else f"the first {row} positions are"
+        told.append(
+            Finding(
+                "warning",
+                f"{first} off the track by {'' if row == 1 else 'up to '}{size:.3g} m",
+                f"{where}, columns 'x' and 'y', row {row}",
+                "it goes on from elsewhere: a receiver that is late stands still where its log begins",
+                "cut the trial there",
+            )
+        )
     found = position_jumps(trial)
     if not found:
-        return []
+        return told
     row, size = max(found, key=lambda one: one[1])
     times = "once" if len(found) == 1 else f"{len(found)} times"
     speed = bridged(trial.t, np.hypot(trial.u, trial.v_m))
     assert speed is not None  # a jump is seen beside what velocities make
     went = float(speed[row, 0] * (trial.t[row] - trial.t[row - 1]))
     return [
+        *told,
         Finding(
             "warning",
             f"the position jumps {times}, by {'' if len(found) == 1 else 'up to '}{size:.3g} m",
             f"{where}, columns 'x' and 'y', row {row}",
             f"'u', 'v' and 'psi' make {went:.2g} m there",
             "mark the positions that are wrong as NaN, or cut the trial there",
-        )
+        ),
     ]
