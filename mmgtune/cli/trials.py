@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import MmgtuneError, OptionError, Problem
-from ..options import MakeOptions
+from ..options import MakeOptions, in_flags
 from ..phrases import counted
 from . import common as c
 from . import completing
 from .exitcodes import ExitCode
 from .options import App, problems_in_flags, takes
+
+if TYPE_CHECKING:
+    from ..importing import Imported
 
 app = App(help="Make trial files from logs or from a model, check and inspect them.")
 
@@ -156,7 +159,7 @@ def map_(
     # Without a file the map is what is printed, so that it can be sent into one.
     tell = c.show if out is not None else c.say
     for line in proposal.lines(str(out) if out is not None else ""):
-        tell(line)
+        tell(in_flags(line))
     if out is None:
         c.show(proposal.text, end="")
 
@@ -189,11 +192,20 @@ def import_(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the quality report, write nothing.", rich_help_panel=c.OUTPUT)
     ] = False,
+    keep_going: Annotated[
+        bool,
+        typer.Option(
+            "--keep-going",
+            help="Import the logs and runs that can be, and exit 1 where others cannot.",
+            rich_help_panel=c.INPUT,
+        ),
+    ] = False,
     json: c.Json = False,
 ) -> None:
     """Turn logs into trial files, one a log, and say what they are worth.
 
-    What a log does not say and its motion does not show is asked for, never guessed.
+    What a log does not say and its motion does not show is asked for, never guessed. Where one log cannot be read, none
+    is imported unless --keep-going is given.
 
     Example:
 
@@ -201,7 +213,6 @@ def import_(
     """
     from .. import units
     from ..importing import import_logs, load_map
-    from ..trial.splitting import suggested_split
 
     if (map_ is None) == (preset is None):
         fix = "--map FILE.toml; mmgtune trials map LOG... -o FILE.toml writes one for these logs"
@@ -218,10 +229,20 @@ def import_(
                 Problem(f"the step is {step}", "--step", "samples follow one another", "give a time above 0 s")
             )
     log_map = load_map(map_) if map_ is not None else load_map(str(preset), preset=True)
-    imported = import_logs(logs, log_map, out or ".", seconds, force, dry_run)
+    imported = import_logs(logs, log_map, out or ".", seconds, force, dry_run, keep_going)
     if json:
         c.print_json(imported.to_dict())
-        return
+    else:
+        _show_imported(imported, out, dry_run)
+    if imported.refused:
+        refused = counted(len(imported.refused), "log or run was", "logs or runs were")
+        c.say(f"not all came in: {refused} refused, {counted(len(imported.trials), 'trial')} made of the others")
+        raise typer.Exit(ExitCode.NO)
+
+
+def _show_imported(imported: Imported, out: Path | None, dry_run: bool) -> None:
+    from ..trial.splitting import suggested_split
+
     c.show(imported.text())
     done = "would be written" if dry_run else f"written to {out}"
     c.show(f"{counted(len(imported.trials), 'trial')} {done}")

@@ -17,9 +17,9 @@ proposing/      what columns are, by behaviour and name; proposal: a map of it, 
 presets/        maps that travel along
 """
 
-from .importer import Imported, import_logs
+from .importer import Imported, Refused, import_logs
 from .maps.mapping import LogMap
 from .maps.reading_map import load_map, parse_map
 from .proposal import Proposal, propose_map
 
-__all__ = ["Imported", "LogMap", "Proposal", "import_logs", "load_map", "parse_map", "propose_map"]
+__all__ = ["Imported", "LogMap", "Proposal", "Refused", "import_logs", "load_map", "parse_map", "propose_map"]

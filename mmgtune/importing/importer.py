@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -27,6 +26,7 @@ from .clock import falls, put_right
 from .cutting import kept, pull_out
 from .doubts import fix_in_map
 from .formats.forms import form_of, refuse_binary
+from .formats.kept import opened_once
 from .formats.matlab import variables
 from .formats.matlab_columns import read_matlab, runs_in
 from .formats.nmea import read_nmea
@@ -74,6 +74,36 @@ class Piece:
     cut: str = ""
 
 
+@dataclass(frozen=True)
+class Refused:
+    """A log, or a part of one, of which no trial was made.
+
+    log       path of it
+    part      its sheet or variable, "" where the log is one trial
+    problems  what is wrong with it
+    """
+
+    log: Path
+    part: str
+    problems: tuple[Problem, ...]
+
+    @property
+    def name(self) -> str:
+        """The log, and the part where there are several, for people."""
+        return f"{self.log}, '{self.part}'" if self.part else str(self.log)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON."""
+        problems = [one.to_dict() for one in self.problems]
+        return {"log": str(self.log), "part": self.part, "problems": problems}
+
+    def text(self) -> str:
+        """What is wrong with it, for people."""
+        return "\n".join(
+            [f"{self.name}: refused", *(f"  {line}" for one in self.problems for line in str(one).splitlines())]
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class Imported:
     """Trials made from logs.
@@ -82,12 +112,14 @@ class Imported:
     quality  one entry per trial (``quality.quality_of``)
     files    what was written, () after a dry run
     map      name of the map
+    refused  logs, and parts of logs, of which no trial was made: () unless the import was to keep going
     """
 
     trials: tuple[Trial, ...]
     quality: tuple[dict[str, Any], ...]
     files: tuple[Path, ...]
     map: str
+    refused: tuple[Refused, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The report as written to ``import-report.json``."""
@@ -97,6 +129,7 @@ class Imported:
             "map": self.map,
             "trials": list(self.quality),
             "files": [str(path) for path in self.files],
+            "refused": [one.to_dict() for one in self.refused],
         }
 
     def text(self) -> str:
@@ -107,9 +140,11 @@ class Imported:
         told: set[tuple[str, str]] = set()
         lines = [quality_text(one, common, told) for one in self.quality]
         of_all = [note for note in self.quality[0]["notes"] if note in common] if self.quality else []
-        return "\n".join([*lines, *(f"all {len(self.quality)} trials: {note}" for note in of_all)])
+        lines += [f"all {len(self.quality)} trials: {note}" for note in of_all]
+        return "\n".join([*lines, *(one.text() for one in self.refused)])
 
 
+@opened_once()
 def import_logs(
     logs: Path | str | Sequence[Path | str],
     log_map: LogMap | Path | str,
@@ -117,16 +152,20 @@ def import_logs(
     step: float | None = None,
     overwrite: bool = False,
     dry_run: bool = False,
+    keep_going: bool = False,
 ) -> Imported:
     """Write each log as one trial file in the folder ``out``, or several where it has to be cut, and a report beside.
 
-    logs     paths of them; of one a path does
-    log_map  what their columns are, or the file that says so
-    step     time step of the trials [s]; None: what the map says, else the log's own median
-    dry_run  write nothing
+    logs        paths of them; of one a path does
+    log_map     what their columns are, or the file that says so
+    step        time step of the trials [s]; None: what the map says, else the log's own median
+    dry_run     write nothing
+    keep_going  import the logs, and the sheets or variables of logs, that can be read where others cannot: these are
+                ``refused`` of the result. False: all or none
 
-    Raises LogError with everything wrong in any of the logs, OptionError for a step that is none, and OutputError where
-    a file exists already and ``overwrite`` is false; nothing is written then.
+    Raises LogError with everything wrong in any of the logs, also where none can be imported or two would become one
+    trial, OptionError for a step that is none, and OutputError where a file exists already and ``overwrite`` is false;
+    nothing is written then.
     """
     require_step(step)
     out = path_of(out)
@@ -134,40 +173,46 @@ def import_logs(
     log_map = log_map if isinstance(log_map, LogMap) else load_map(log_map)
     refuse_file(out)
     require_flag(overwrite)
-    problems: list[Problem] = []
+    refused: list[Refused] = []
     runs: list[tuple[Path, LogMap]] = []
     for log in paths:
         try:
             runs += [(log, own) for own in _each(log_map, log)]
         except LogError as error:
-            problems += error.problems
+            refused.append(Refused(log, "", error.problems))
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
         refuse_existing([out / REPORT, *(out / f"{_name(own, log)}.parquet" for log, own in runs)])
     trials: list[Trial] = []
     quality: list[dict[str, Any]] = []
+    sources: dict[str, list[tuple[Path, LogMap]]] = {}
+    good = 0
     for log, own in runs:
         try:
             # Damaged numbers overflow on their way to where they are found out.
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 made = _trials(log, own, step)
         except LogError as error:
-            problems += [_of_part(one, own.part) if own.part else one for one in error.problems]
+            problems = [_of_part(one, own.part) if own.part else one for one in error.problems]
+            refused.append(Refused(log, own.part, tuple(problems)))
             continue
+        good += 1
         trials += [trial for trial, _ in made]
         quality += [one for _, one in made]
-    twice = [name for name, count in Counter(trial.id for trial in trials).items() if count > 1]
-    problems += [
-        Problem(f"several logs would become trial '{name}'", str(out), fix='say id = "{parent}-{stem}" in [trial]')
-        for name in twice
-    ]
-    if problems:
-        raise LogError(*dict.fromkeys(problems))
+        for trial, _ in made:
+            sources.setdefault(trial.id, []).append((log, own))
+    twice = [_of_one_name(name, found) for name, found in sources.items() if len(found) > 1]
+    if twice or (refused and not (keep_going and good)):
+        wrong = list(dict.fromkeys(problem for one in refused for problem in one.problems))
+        if good and wrong and not keep_going:
+            rest = f"keep_going=True imports the {counted(good, 'other')}"
+            wrong[-1] = replace(wrong[-1], fix=f"{wrong[-1].fix}; {rest}" if wrong[-1].fix else rest)
+        raise LogError(*wrong, *twice)
     if dry_run:
-        return Imported(tuple(trials), tuple(quality), (), log_map.name)
+        return Imported(tuple(trials), tuple(quality), (), log_map.name, tuple(refused))
     files = [out / f"{trial.id}.parquet" for trial in trials]
     refuse_existing(files, overwrite)
-    imported = Imported(tuple(trials), tuple(quality), tuple(files), log_map.name)
+    imported = Imported(tuple(trials), tuple(quality), tuple(files), log_map.name, tuple(refused))
     with all_or_none():
         for trial, path in zip(trials, files, strict=True):
             write_trial(trial, path, overwrite)
@@ -197,8 +242,10 @@ def _each(log_map: LogMap, log: Path) -> tuple[LogMap, ...]:
     found: dict[str, LogMap] = {}
     for part in parts:
         named = replace(own.of_part(part), id=template)
-        if _name(named, log).lower() in map(str.lower, found):  # run 1 and run_1, as files are called
-            named = replace(named, id=f"{template}_{len(found) + 1}")
+        taken = {name.lower() for name in found}  # run 1 and run_1, as files are called
+        number = len(found) + 1
+        while _name(named, log).lower() in taken:
+            named, number = replace(named, id=f"{template}_{number}"), number + 1
         found[_name(named, log)] = named
     return tuple(found.values()) or (own,)
 
@@ -206,6 +253,22 @@ def _each(log_map: LogMap, log: Path) -> tuple[LogMap, ...]:
 def _parts_in(log: Path, log_map: LogMap) -> list[str]:
     """The sheets of a workbook that hold a log, or the runs in a MATLAB file; "" where these are not told apart."""
     return (runs_in(variables(log)) if log_map.variable else logs_among(outlines_of(log))) or [""]
+
+
+def _of_one_name(name: str, found: Sequence[tuple[Path, LogMap]]) -> Problem:
+    """What is wrong where several trials would have the name ``name``, by the logs and maps that they are of."""
+    (first, one), (second, other) = found[:2]
+    what = f"several {'parts' if first == second else 'logs'} would become trial '{name}'"
+    shown = [f"'{of.part}'" if first == second else f"'{log.name}'" for log, of in ((first, one), (second, other))]
+    cut = [text for text, (log, of) in zip(shown, found, strict=False) if _name(of, log) != name]
+    why = f"{cut[0]} is cut in parts, and they are numbered" if cut else f"{shown[0]} and {shown[1]} have one name"
+    if first == second:
+        fix = 'say id = "{part}-{stem}" in [trial], so that the numbers follow the log\'s name'
+    elif cut:
+        fix = f"give {next((text for text in shown if text not in cut), shown[1])} another name, or import it by itself"
+    else:
+        fix = 'say id = "{parent}-{stem}" in [trial]'
+    return Problem(what, str(second), why, fix)
 
 
 def _of_part(problem: Problem, part: str) -> Problem:

@@ -17,6 +17,7 @@ from ..errors import LogError, Problem
 from ..phrases import counted
 from .doubts import shifted_lever
 from .formats.forms import form_of
+from .formats.kept import opened_once
 from .importer import Imported, import_logs, paths_of
 from .maps.mapping import ALL, ASKS, PARTS, LogMap
 from .maps.reading_map import parse_map
@@ -122,6 +123,7 @@ def _given(logs: Sequence[Path]) -> str:
     return " ".join(quote(str(log)) for log in logs)
 
 
+@opened_once()
 def propose_map(logs: Path | str | Sequence[Path | str]) -> Proposal:
     """Find out what the columns of logs, or of one, are and write a map that imports them.
 

@@ -133,8 +133,7 @@ def unit_of(name: str, table: Table, source: Source | TimeSource, target: str, v
             what = f"the cells of '{header}' say {in_cells}, which is no unit of {meaning(name) or name}"
             raise LogError(Problem(what, place, fix="name another column in the map"))
         return in_cells
-    printed = unit_in(header)
-    printed = printed if printed in known else None
+    printed = next((one for one in (unit_in(header), table.below.get(name)) if one in known), None)
     if stated and printed and printed not in (stated, source.header_says):
         what = f"the map says '{header}' is in {stated}, its header says {printed}"
         fix = f'correct the map\'s unit or remove it; if the header is wrong, add header_says = "{printed}"'

@@ -6,7 +6,7 @@ import re
 
 from .choice import Choice, Options, choices
 
-FLAGS: dict[str, str] = {"overwrite": "--force"}
+FLAGS: dict[str, str] = {"overwrite": "--force", "keep_going": "--keep-going"}
 """The flag of every field of every dataclass of options, and of what functions that write are asked; commands add what
 they have to themselves."""
 

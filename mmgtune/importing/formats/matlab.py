@@ -19,6 +19,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...errors import LogError, Problem, reason
 from ...limits import LOG_COLUMNS, MATLAB_BYTES, content
+from .kept import opened
 
 HEADER = 128
 _NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
@@ -64,6 +65,11 @@ def variables(path: Path) -> dict[str, Value]:
 
     Raises LogError where it is damaged, for files of version 4 and 7.3, and where there is more in it than may be.
     """
+    with opened(path, "mat", lambda: _variables(path), lambda _: None) as found:
+        return found
+
+
+def _variables(path: Path) -> dict[str, Value]:
     data = content(path, MATLAB_BYTES, LogError)
     fix = 'save it again with save("file.mat", "-v7")'
     if b"MATLAB 7.3" in data[:HEADER] or data.startswith(b"\x89HDF"):

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ...arrays import FloatArray, IntArray
 from ...errors import LogError, Problem
-from ...units import is_unit
+from ...units import canonical, is_unit
 from ..cells.degrees import DDMM, degrees, of_ddmm
 from ..cells.numerals import holds_numbers, number_in, numbers_in
 from ..cells.position_pair import pair_in
@@ -46,6 +46,7 @@ class Table:
     headers  the log's name of each quantity's column
     clock    whether ``t`` was printed as a date or clock, so that it is in s already
     stated   units that the cells of a quantity say themselves, such as 52°06.00001'N
+    below    units that a row below the names says, by quantity
     sided    quantities whose cells say the side themselves, such as 35.0S; those to starboard are positive
     notes    what was done or dropped while reading, in sentences
     """
@@ -59,6 +60,7 @@ class Table:
     unit: str = "line"
     notes: list[str] = field(default_factory=list)
     stated: dict[str, str] = field(default_factory=dict)
+    below: dict[str, str] = field(default_factory=dict)
     sided: tuple[str, ...] = ()
 
     def place(self, row: int) -> str:
@@ -226,7 +228,10 @@ class Cells:
         units: dict[int, str] = {}
         for name, bad in self.bad.items():
             place = f"{table.path}, {table.unit} {bad.row}, column '{table.headers[name]}'"
-            if bad.count == 1 and is_unit(bad.text) and bad.row <= table.rows.min(initial=bad.row):
+            first = is_unit(bad.text) and bad.row <= table.rows.min(initial=bad.row)
+            if first:
+                table.below[name] = canonical(bad.text)
+            if first and bad.count == 1:
                 units[bad.row] = f"line {bad.row} holds units"
                 continue
             if name in self.parted:

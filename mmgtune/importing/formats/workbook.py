@@ -16,10 +16,12 @@ from typing import Any
 from ...errors import LogError, Problem, among, brief, reason
 from ...limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS, SHEET_ROWS
 from ...phrases import listed
+from ..cells.headers import find_column
 from ..cells.numerals import number_in
 from ..cells.with_units import is_with_unit
 from ..maps.mapping import LogMap
 from .in_memory import table_of
+from .kept import opened
 from .table import InPart, Table
 
 ENTRIES = 2000
@@ -36,6 +38,10 @@ LOOKED_AT = 2000
 """Rows of a sheet that are looked at to tell which holds a log."""
 COLUMNS = 4
 """Numbers in a row from which it may be one of a log: time, and a position and heading at least."""
+TITLES = 400
+"""Rows of a sheet among which the names of the columns are looked for."""
+FEWEST_NAMES = 3
+"""Names of columns by which the row that they stand in is known."""
 _COUNTED = (float, int, datetime.datetime, datetime.time, datetime.timedelta)
 SMALL = 0.2
 """Share of the numbers of the largest sheet, of the rows looked at, from which another one is a log too."""
@@ -68,10 +74,11 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
     import pandas as pd
 
     sheet = sheet_of(path, log_map.sheet)
-    rows = sheet.rows[log_map.skip :]
-    where = InPart(f"{path}, sheet '{sheet.name}', row {log_map.skip + 1}")
+    skip = _head_of(sheet, log_map)
+    rows = sheet.rows[skip:]
+    where = InPart(f"{path}, sheet '{sheet.name}', row {skip + 1}")
     if not any(rows):
-        why = f"the sheet has {len(sheet.rows)} rows, of which {log_map.skip} are to be skipped"
+        why = f"the sheet has {len(sheet.rows)} rows, of which {skip} are to be skipped"
         raise LogError(Problem("the log has no rows", where, why, "check 'sheet' and 'skip' in [log], and the file"))
     names = names_of(rows, log_map.header)
     if log_map.header and names and all(_numeric(one) for one in names if one):
@@ -86,12 +93,28 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
         pd.Series([as_text(row[k]) if k < len(row) else None for row in body], dtype="string")
         for k in range(len(names))
     ]
-    first = log_map.skip + (2 if log_map.header else 1)
+    first = skip + (2 if log_map.header else 1)
     table = table_of(path, log_map, names, columns, first, "row", where)
     table.notes += sheet.notes
+    if skip != log_map.skip:
+        table.notes.append(f"the names of the columns were found in row {skip + 1}, not in row {log_map.skip + 1}")
     empty = [table.headers[name] for name, values in table.columns.items() if not (values == values).any()]
     require_results(path, sheet.name, formulas_in(path, sheet.name, names, empty))
     return table
+
+
+def _head_of(sheet: Sheet, log_map: LogMap) -> int:
+    """How many rows stand above the names: as many as the map says, or of one of several runs as it takes there."""
+    named = [log_map.time.columns, *(source.columns for source in log_map.sources.values())]
+    asked = [column for columns in named for column in columns.values() if isinstance(column, str)]
+    if not (log_map.parts and log_map.header) or len(asked) < FEWEST_NAMES:
+        return log_map.skip
+    places: list[int] = [log_map.skip, *range(min(len(sheet.rows), TITLES))]
+    for k in places:
+        names = [as_text(cell) or "" for cell in (sheet.rows[k] if k < len(sheet.rows) else ())]
+        if all(find_column(one, names) is not None for one in asked):
+            return k
+    return log_map.skip
 
 
 def require_results(path: Path, sheet: str, formulas: Mapping[str, str]) -> None:
@@ -197,28 +220,9 @@ def as_text(cell: Any) -> str | None:
 @contextmanager
 def _opened(path: Path, formulas: bool = False) -> Iterator[Any]:
     """A workbook whose parts are within limits.  Raises LogError where it is damaged."""
-    import openpyxl
-
     try:
-        with zipfile.ZipFile(path) as parts:
-            listed = parts.infolist()
-            # What is read of a part never exceeds the size that its entry says.
-            SHEET_BYTES.require(sum(one.file_size for one in listed), str(path), LogError)
-            if len(listed) > ENTRIES:
-                raise LogError(Problem(f"the workbook has {len(listed)} parts", str(path), f"the limit is {ENTRIES}"))
-            for one in listed:
-                with parts.open(one) as file:
-                    start = file.read(2048)
-                if b"<!DOCTYPE" in start or b"<!ENTITY" in start:
-                    what = f"part '{one.filename[:80]}' of the workbook declares a document type"
-                    raise LogError(Problem(what, str(path), "no spreadsheet program writes that", "save it again"))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            book = openpyxl.load_workbook(path, read_only=True, data_only=not formulas, keep_links=False)
-            try:
-                yield book
-            finally:
-                book.close()
+        with opened(path, "formulas" if formulas else "xlsx", lambda: _book(path, formulas), _close) as book:
+            yield book
     except (LogError, MemoryError):
         raise
     except zipfile.BadZipFile as error:
@@ -231,6 +235,30 @@ def _opened(path: Path, formulas: bool = False) -> Iterator[Any]:
         why = f"{type(error).__name__}: {reason(error)}"
         fix = "save it again as .xlsx with a spreadsheet program, or save the sheet as CSV"
         raise LogError(Problem("the workbook cannot be read", str(path), why, fix)) from error
+
+
+def _book(path: Path, formulas: bool) -> Any:
+    import openpyxl
+
+    with zipfile.ZipFile(path) as parts:
+        listed = parts.infolist()
+        # What is read of a part never exceeds the size that its entry says.
+        SHEET_BYTES.require(sum(one.file_size for one in listed), str(path), LogError)
+        if len(listed) > ENTRIES:
+            raise LogError(Problem(f"the workbook has {len(listed)} parts", str(path), f"the limit is {ENTRIES}"))
+        for one in listed:
+            with parts.open(one) as file:
+                start = file.read(2048)
+            if b"<!DOCTYPE" in start or b"<!ENTITY" in start:
+                what = f"part '{one.filename[:80]}' of the workbook declares a document type"
+                raise LogError(Problem(what, str(path), "no spreadsheet program writes that", "save it again"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return openpyxl.load_workbook(path, read_only=True, data_only=not formulas, keep_links=False)
+
+
+def _close(book: Any) -> None:
+    book.close()
 
 
 def _rows(sheet: Any, path: Path, most: int | None = None) -> list[tuple[Any, ...]]:

@@ -156,7 +156,8 @@ class LogMap:
     variable    of a MATLAB file, a structure or a matrix that holds the columns, such as "log" or "data.run(2)"; ""
                 where they are variables themselves
     parts       sheets or variables that each become a trial of one log, the first of them also in ``sheet`` or
-                ``variable``; () where a log is one trial. Of ALL, in their place, there are as many as a log has
+                ``variable``; of the map of one of them, it alone; () where a log is one trial. Of ALL, in their
+                place, there are as many as a log has
     thousands   what divides thousands, "none" for nothing, None where each column has to show it
     fields      how many a row of a log has, None where the map does not say
     axes        "ship" or "earth": of u and v; None where the map does not say
@@ -209,8 +210,9 @@ class LogMap:
         return next((one for pattern, one in self.some if fnmatchcase(log.name, pattern)), self)
 
     def of_part(self, part: str) -> LogMap:
-        """The map of one sheet or variable alone."""
-        return replace(self, parts=(), variable=part) if self.variable else replace(self, parts=(), sheet=part)
+        """The map of one sheet or variable of several."""
+        parts = (part,) if part else ()
+        return replace(self, parts=parts, variable=part) if self.variable else replace(self, parts=parts, sheet=part)
 
     @property
     def part(self) -> str:

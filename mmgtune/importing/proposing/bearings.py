@@ -85,7 +85,8 @@ def tracks(
     columns = windows.columns
     slopes = {k: windows.slope(columns[k]) for k in among}
     means = {k: windows.mean(columns[k]) for k in among}
-    moving = [k for k in among if np.nanstd(slopes[k]) > 0.0 or abs(np.nanmean(slopes[k])) > 0.0]
+    known = [k for k in among if np.isfinite(slopes[k]).any()]
+    moving = [k for k in known if np.nanstd(slopes[k]) > 0.0 or abs(np.nanmean(slopes[k])) > 0.0]
     rates = _rates(moving, slopes, means)
     whole = {a for a, _ in rates}
     found: dict[Track, tuple[float, str]] = {}

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from ... import units
 from ...errors import LogError, Problem
 from ...phrases import listed
+from ..cells.headers import bare
 from .sampling import Sample
+from .words import KINDS, unit_named
 
 LEAST = 0.5
 """Share of the columns of the log with the fewest that are in all logs, if they are of one kind."""
@@ -29,6 +32,49 @@ def in_common(samples: Sequence[Sample]) -> tuple[list[Sample], list[str]]:
         raise LogError(of_different_kinds(samples))
     others = dict.fromkeys(name.strip() for one in samples for name in one.names if name.strip() not in shared)
     return [one.only(shared) for one in samples], [name for name in others if name]
+
+
+def as_each_says(samples: Sequence[Sample]) -> tuple[list[Sample], list[str], list[str]]:
+    """Logs whose columns go by one name where names differ in their units, or in one file in capitals, alone.
+
+    Where units differ the numbers are in that of the first log then.
+
+    Returns the logs, the names of the columns whose units differ, and sentences on them.
+    """
+    first = samples[0]
+    found, own, notes = list(samples), [], []
+    of_one = all(one.path == first.path for one in samples)
+
+    def called(name: str) -> str:
+        return bare(name).lower() if of_one else bare(name)
+
+    columns: list[dict[str, list[int]]] = [{} for _ in samples]
+    for one, of in zip(samples, columns, strict=True):
+        for k, name in enumerate(one.names):
+            of.setdefault(called(name), []).append(k)
+    for name in first.names:
+        places = [of[called(name)][0] for of in columns if len(of.get(called(name), ())) == 1]
+        if not name.strip() or len(places) < len(samples):
+            continue
+        said = [unit_named(one.names[k], one.units[k]) for one, k in zip(samples, places, strict=True)]
+        if len(set(said)) == 1:
+            found = [one.called(k, name, one.units[k]) for one, k in zip(found, places, strict=True)]
+            continue
+        known = next((units.factors(kind) for kind in KINDS if set(said) <= set(units.factors(kind))), None)
+        if known is None:
+            continue
+        found = [
+            one.called(k, bare(name), said[0], known[unit] / known[said[0]])
+            for one, k, unit in zip(found, places, said, strict=True)
+        ]
+        own.append(bare(name))
+        other = next(k for k, unit in enumerate(said) if unit != said[0])
+        here, there = (samples[k].part or samples[k].path.name for k in (0, other))
+        notes.append(
+            f"'{bare(name)[:60]}' is in {said[0]} in '{here}' and in {said[other]} in '{there}': "
+            "each is read in the unit that its header says"
+        )
+    return found, own, notes
 
 
 def of_different_kinds(samples: Sequence[Sample]) -> Problem:

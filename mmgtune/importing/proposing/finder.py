@@ -30,6 +30,7 @@ class Finder:
 
     said, units_said  (n_columns,) what names say: a quantity, a unit
     units_wrong       units that names say and behaviour refutes, by column; ``units_said`` has "" there
+    own_units         columns whose unit each log says itself, as they differ in it
     guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
     used, numeric     columns that are something already, and those whose behaviour can be looked at
     parts             further columns of what is in several, by the first of them and by what they hold
@@ -43,9 +44,10 @@ class Finder:
 
     axes: str | None = None
 
-    def __init__(self, samples: Sequence[Sample]):
+    def __init__(self, samples: Sequence[Sample], own_units: Sequence[str] = ()):
         self.samples = list(samples)
         self.first = samples[0]
+        self.own_units = {k for k, name in enumerate(self.first.names) if name in own_units}
         below = [row if any(one.units[k] == row for one in samples) else "" for k, row in enumerate(self.first.units)]
         # A unit below a name tells what it is of as one behind it does.
         shown = [f"{name} [{row}]" if row else name for name, row in zip(self.first.names, below, strict=True)]
@@ -84,6 +86,9 @@ class Finder:
         if guess.column in self.parts:
             parts = {part: self.first.reference(k) for part, k in self.parts[guess.column].items()}
             guess = replace(guess, keys={**parts, **guess.keys})
+        if guess.column in self.own_units and "header_says" not in guess.keys:
+            keys = {key: value for key, value in guess.keys.items() if key != "unit"}
+            guess = replace(guess, keys=keys, evidence=(*guess.evidence, "its unit is what each log says"))
         if guess.column in self.ddmm:
             guess = replace(guess, keys={**guess.keys, "unit": DDMM})
         self.guesses[guess.quantity] = guess

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ...errors import LogError
 from ...phrases import listed
-from .common import in_common, of_different_kinds
+from .common import as_each_says, in_common, of_different_kinds
 from .find_controls import propeller, rudder
 from .find_motion import velocity, yaw_rate
 from .find_rest import by_name, few_digits, missing, whole_degrees
@@ -23,10 +23,11 @@ from .unread import doubt_thousands, unread
 
 def found_in(samples: Sequence[Sample]) -> Finder:
     """What the columns of logs of one kind are.  Raises LogError where they differ, or none is time."""
-    shared, others = in_common(samples)
+    together, own, differing = as_each_says(samples)
+    shared, others = in_common(together)
     shared, said = without_codes(shared)
-    find = Finder(shared)
-    find.notes += [*dict.fromkeys(note for one in samples for note in one.notes), *said]
+    find = Finder(shared, own)
+    find.notes += [*dict.fromkeys(note for one in samples for note in one.notes), *differing, *said]
     if others:
         shown = listed([f"'{name[:60]}'" for name in others], 8)
         find.notes.append(f"not all logs have {shown}: left out")

@@ -19,6 +19,7 @@ from ...errors import LogError, Problem, reason
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from ...phrases import counted, listed
 from ..cells.degrees import degrees
+from ..cells.headers import bare, find_column
 from ..cells.numerals import holds_numbers, numbers_in
 from ..cells.position_parts import HEMISPHERES
 from ..cells.stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
@@ -44,6 +45,8 @@ NO_ANGLES = {one for kind in ("m", "s", "m/s", "1/s") for one in units.factors(k
 """Units behind numbers that may look like minutes and sides of an angle."""
 _PATH = re.compile(r"[./_:]")
 """What divides the name of a signal."""
+_HEAD = ("skip", "header", "fields")
+"""Keys of [log] that say where the names of the columns are."""
 HEAD, ALMOST = 20, 0.95
 """Lines that names may stand in, and share of lines with as many fields from which a mark divides them."""
 MARKS = ("\t", ";", ",", "|", " ")
@@ -127,14 +130,23 @@ class Sample:
             sided=frozenset(to for to, k in enumerate(moved) if k in self.sided),
         )
 
+    def called(self, k: int, name: str, unit: str, factor: float = 1.0) -> Sample:
+        """The sample with another name and unit of a column, its numbers times a factor."""
+        if (name, unit, factor) == (self.names[k], self.units[k], 1.0):
+            return self
+        return replace(
+            self,
+            names=tuple(name if i == k else one for i, one in enumerate(self.names)),
+            units=tuple(unit if i == k else one for i, one in enumerate(self.units)),
+            numbers=[one * factor if i == k and factor != 1.0 else one for i, one in enumerate(self.numbers)],
+        )
+
     def reference(self, k: int) -> str | int:
         """How a map names a column: by its name where that is its own, else by its number."""
         k = self.second.get(k, k)
         name = self.names[k].strip()
         if not name or len(name) > 200 or not name.isprintable() or self.layout.get("header") is False:
             return k + 1
-        from ..cells.headers import find_column
-
         return name if find_column(name, self.names) == k else k + 1
 
     def shown(self, k: int) -> str:
@@ -342,6 +354,7 @@ def _of_workbook(path: Path) -> list[Sample]:
     outlines = outlines_of(path)
     logs = logs_among(outlines) or [one.name for one in outlines][-1:]
     heads = {one.name: _head(one.rows[:HEADING]) for one in outlines if one.name in logs}
+    _require_apart(path, {name: heads[name][0] for name in logs})
     # Sheets that are written alike are runs; of others the first is the log.
     alike = [one for one in logs if _alike(heads[logs[0]], heads[one])]
     layout: dict[str, Any] = {"format": "xlsx"}
@@ -354,18 +367,44 @@ def _of_workbook(path: Path) -> list[Sample]:
     elif len(outlines) > 1:
         layout["sheet"] = logs[0]
     several = len(alike) > 1
-    sheets = {one: _of_sheet(path, one, layout) for one in alike[:RUNS]}
+    sheets: dict[str, Sample] = {}
+    for one in alike[:RUNS]:
+        own = dict(layout)
+        sheets[one] = _of_sheet(path, one, own)
+        # Where its names stand each sheet shows; the map says it of the first.
+        layout |= {key: value for key, value in own.items() if not (sheets.keys() - {one}) or key not in _HEAD}
+    sheets = {one: replace(of, layout=layout) for one, of in sheets.items()}
     return [replace(of, notes=[*notes, *of.notes], part=one if several else "") for one, of in sheets.items()]
+
+
+def _require_apart(path: Path, names: Mapping[str, Sequence[str]]) -> None:
+    """Raise LogError for a workbook that has a sheet for each quantity, by the names of the columns of each sheet."""
+    found = {}
+    for sheet, columns in names.items():
+        filled = [one for one in columns if one.strip()]
+        of = {one: quantity_named(one) for one in filled}
+        values = [one for one in filled if of[one] not in (TIME, DATE)]
+        if len(values) != 1 or len(values) == len(filled):
+            return
+        found[sheet] = of[values[0]] or quantity_named(sheet)
+    if len({one for one in found.values() if one}) < max(2.0, 0.5 * len(found)):
+        return
+    shown = listed([f"'{one}'" for one in found], 8)
+    what, why = f"each sheet holds one quantity: {shown}", "a log has a row for each time and a column for each of them"
+    fix = "put them on one sheet: a column of time, and one for each; cells without a value at a time stay empty"
+    raise LogError(Problem(what, str(path), why, fix))
 
 
 def _alike(one: tuple[list[str], int | None], other: tuple[list[str], int | None]) -> bool:
     """Whether sheets with these names of columns, in these rows, can be read by one map."""
-    names = [{name.strip() for name in of[0] if name.strip()} for of in (one, other)]
+    names = [{bare(name).lower() for name in of[0] if name.strip()} for of in (one, other)]
     if not names[0]:
         return one == other
     if any(quantity_named(name) in (DATE, TIME) for name in names[0] ^ names[1]):
         return False
-    return one[1] == other[1] and len(names[0] & names[1]) >= max(min(4, len(names[0])), 0.75 * max(map(len, names)))
+    if (one[1] is None) != (other[1] is None):
+        return False
+    return len(names[0] & names[1]) >= max(min(4, len(names[0])), 0.75 * max(map(len, names)))
 
 
 def _head(rows: Sequence[Sequence[Any]]) -> tuple[list[str], int | None]:
