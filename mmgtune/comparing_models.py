@@ -17,7 +17,7 @@ from typing import Any, TypeVar, cast
 
 from .arguments import TrialsGiven, trials_of
 from .bands import Pooled, WindowScore, pooled
-from .displayed import Brief, Displayed
+from .displayed import Brief, Plotted
 from .errors import OptionError, Problem, closest
 from .inputs import INPUTS
 from .options import CompareModelsOptions
@@ -130,7 +130,7 @@ class Compared(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class ModelComparison(Displayed):
+class ModelComparison(Plotted):
     """Models on the same trials.
 
     sigma   what L_MSE divides differences of each state by [SI]

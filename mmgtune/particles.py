@@ -124,6 +124,11 @@ class ParticlePredictor(PhysicsPredictor):
         """What is doubted of the particles."""
         return self.particles.doubted if self.particles is not None else ()
 
+    @property
+    def holds(self) -> int:
+        """Particles there are."""
+        return len(self.particles) if self.particles is not None else 0
+
     def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> PhysicsPredictor:
         """n particles, none twice where there are as many.
 

@@ -159,12 +159,14 @@ class Uncertain(Predictor, Protocol):
 
 
 def particles_of(predictor: Predictor, n: int, seed: int, sampling: Sampling = "TS-infinity") -> Predictor:
-    """n particles of a predictor that is ``Uncertain``; any other as it is, whose members are its particles.
+    """n particles of a predictor that is ``Uncertain``, or all that it ``holds`` where these are fewer; any other as it
+    is, whose members are its particles.
 
     Raises OptionError for a way of sampling that makes no sense for it.
     """
     if isinstance(predictor, Uncertain):
-        return predictor.drawn(n, seed, sampling)
+        # Twice the same particle says no more than once, and makes bands look surer than they are.
+        return predictor.drawn(min(n, getattr(predictor, "holds", n)), seed, sampling)
     if sampling != "TS-infinity":
         what = f"'{predictor.name}' cannot be sampled by {sampling}"
         why = "only an ensemble that draws particles can have another member at each step"

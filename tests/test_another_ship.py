@@ -56,6 +56,24 @@ def test_others_that_learn_from_trials_say_so(own, others):
     assert not any("are of" in one for one in mmgtune.posterior("suzaku", own, few).warnings)
 
 
+def test_trainings_say_so(own, others):
+    """Of networks, ensembles and hybrids by what they hold, of a mixture by the trials that choose its share."""
+    networks = mmgtune.LearnOptions(seeds=1, steps=2, validate_every=2, batch=4, width=4, memory=2, horizon=4)
+    members = mmgtune.EnsembleOptions(
+        members=2, width=4, layers=1, steps=2, validate_every=2, batch=4, horizon=4, initial=2
+    )
+    hybrid = mmgtune.HybridOptions(steps=2, validate_every=2, batch=4, width=4, step=2.0, refit=False)
+    net = mmgtune.learn_rnn("suzaku", others, networks)
+    told = [
+        net,
+        mmgtune.learn_ensemble("suzaku", others, members),
+        mmgtune.learn_hybrid("suzaku", others, hybrid),
+        mmgtune.learn_mixture("suzaku", net, others),
+    ]
+    assert [one.warnings for one in told] == [(f"T{SAID[1:]}.",)] * 4
+    assert mmgtune.learn_mixture("suzaku", net, own).warnings == ()
+
+
 def test_a_diagnosis_and_a_check_say_so(own, others):
     found = mmgtune.diagnose("suzaku", others, mmgtune.DiagnoseOptions(effects=("antenna",)))
     assert f"T{SAID[1:]}." in found.warnings

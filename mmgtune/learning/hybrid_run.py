@@ -34,6 +34,7 @@ from .provenance import provenance_of, travelling
 from .refitting import refitted, tuned_names
 from .samples import Samples, samples_of
 from .splitting import Split, fold_runs, split_runs
+from .task import warned
 from .training import Plan, Progressed, Trainer, needed
 
 LAG, STEP = 0.5, 0.03
@@ -58,6 +59,7 @@ class LearnedHybrid:
     tried    of each weight of the penalty the score by step, 1 being the model of forces alone
     gains    on the runs that chose, by kind of manoeuvre
     scores   of the trials held out, before and after
+    warnings  what to know of it: that the trials are of another ship, where they are
     """
 
     written_by = "write_learned"
@@ -77,6 +79,7 @@ class LearnedHybrid:
     events: tuple[dict[str, Any], ...]
     interrupted: bool
     wall_s: float
+    warnings: tuple[str, ...] = ()
 
     @property
     def gained(self) -> bool:
@@ -168,6 +171,7 @@ def learn_hybrid(
         (*(event for of in trained.values() for one in of for event in one.events), *events),
         work.stopped,
         time.perf_counter() - began,
+        warned(profile, data),
     )
 
 

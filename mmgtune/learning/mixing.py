@@ -35,6 +35,7 @@ from ..scores import L_MSE, by_manoeuvre, score
 from ..trial import Trial, TrialSet
 from ..validating import Scorable
 from .choosing import pieces_of
+from .task import warned
 
 NetworkGiven = Network | Predictor | str | Path
 
@@ -68,6 +69,7 @@ class LearnedMixture:
     seen     runs among those that chose which a part was trained on: their errors flatter it
     network  which of several networks is kept alone, counted from 1; None where none is
     parts    what was put together, as it was given, by what a comparison calls it
+    warnings  what to know of it: that the trials are of another ship, where they are
     """
 
     written_by = "write_learned"
@@ -79,6 +81,7 @@ class LearnedMixture:
     provenance: dict[str, Any]
     network: int | None = None
     parts: Mapping[str, Scorable] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
 
     @property
     def share(self) -> float:
@@ -153,6 +156,7 @@ def learn_mixture(
     facts: dict[str, Any] = {"type": "mixture", **{key: made[key] for key in ("mmgtune", "created", "environment")}}
     facts["trials"] = _trials_of(parts)
     which: int | None = None
+    warnings: tuple[str, ...] = ()
     if trials is None:
         if len(mixtures) > 1:
             why = f"{len(mixtures)} shares could be meant"
@@ -161,6 +165,7 @@ def learn_mixture(
     else:
         data = trials_of(trials).series_only("a mixture")
         chosen = [data.trials[id] for id in data.tune]
+        warnings = warned(hybrid.profile, data)
         learned = {*_tuned_on(hybrid.profile), *(id for of in parts for id in _learned(of))}
         seen = tuple(one.id for one in chosen if {one.id, one.run} & learned)
         candidates: list[_Candidate] = [
@@ -177,7 +182,7 @@ def learn_mixture(
     told = {"hybrid": hybrid.facts, "networks": [one.facts for one in nets]}
     alone = [f"networks {k + 1}" for k in range(len(several))] if several[1:] else ["networks"]
     given = {"model of forces": model, **dict(zip(alone, several, strict=True))}
-    return LearnedMixture(best, tuple(tried), seen, options, {**made, "parts": told}, which, given)
+    return LearnedMixture(best, tuple(tried), seen, options, {**made, "parts": told}, which, given, warnings)
 
 
 def compare_parts(

@@ -93,6 +93,11 @@ class Learned:
         """The trials it is judged by first."""
         return next(iter(self.task.by_role))
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What to know of it: that the trials are of another ship, where they are."""
+        return self.task.warnings
+
     def as_ship(self) -> Network:
         """What was trained: what the result stands for where a ship is wanted."""
         return self.network

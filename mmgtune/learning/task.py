@@ -13,11 +13,17 @@ from ..networks.model import sided
 from ..networks.motion import mirror
 from ..objective import spread, varying
 from ..options.learning import MOST_MEMBERS, EnsembleOptions, LearnOptions, TrainingOptions
+from ..phrases import capital
 from ..profile import ShipProfile
-from ..trial import Trial, TrialSet
+from ..trial import Trial, TrialSet, another_ship
 from .recipes import RECIPES, Recipe
 from .samples import Samples, own_step, samples_of
 from .splitting import Split, split_runs
+
+
+def warned(profile: ShipProfile, data: TrialSet) -> tuple[str, ...]:
+    """Where trials are of another ship than a profile, that they are, in a sentence."""
+    return tuple(f"{capital(words)}." for words in another_ship(data.ship, profile.id))
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +44,11 @@ class Material:
     samples: Samples
     sigma: dict[str, float]
     test: tuple[Trial, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Where the trials are of another ship than the profile, that they are, in a sentence."""
+        return warned(self.profile, self.data)
 
     @property
     def by_role(self) -> dict[str, tuple[Trial, ...]]:

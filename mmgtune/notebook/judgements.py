@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ..physics.quantities import STATES
 from ..profile.doubts import in_words
 from .fits import compared
 from .ships import measured, simulated
 from .view import Line, Row, View
 
 if TYPE_CHECKING:
+    from ..arrays import FloatArray
     from ..checking import CheckReport
     from ..comparing_models import ModelComparison
     from ..comparing_profiles import Comparison
     from ..diagnose import Diagnosis
+    from ..predictor import Predictor
+    from ..trial import Trial
     from ..validating import Validation
     from ..voyages import VoyageValidation
 
@@ -57,13 +64,23 @@ def validation(result: Validation) -> View:
 
 def _validated(result: Validation) -> Mapping[str, list[Line]]:
     """Trials, or windows of them, as measured and as each model has them."""
-    found: dict[str, list[Line]] = {one.id: [measured(one)] for one in result.pieces}
+    return _alongside(result.pieces, {one.name: (one.predictor, one.offsets) for one in result.profiles})
+
+
+def _alongside(
+    trials: Sequence[Trial], models: Mapping[str, tuple[Predictor, FloatArray | None]]
+) -> Mapping[str, list[Line]]:
+    """Trials as measured, and beside each what the first member of each model makes of it.
+
+    models  each with what is added to the first measured states, (n_trials, 6), or None
+    """
     from ..motions import motions
 
-    for model in result.profiles:
-        for run in motions(model.predictor, result.pieces, model.offsets):
+    found: dict[str, list[Line]] = {one.id: [measured(one)] for one in trials}
+    for name, (predictor, offsets) in models.items():
+        for run in motions(predictor, trials, offsets):
             if not run.diverged and run.member == 0:
-                found[run.id].append(simulated(run, model.name))
+                found[run.id].append(simulated(run, name))
     return found
 
 
@@ -79,7 +96,13 @@ def models(result: ModelComparison) -> View:
                      "deviation": cell.deviation, "diverged": cell.diverged}
                 )  # fmt: skip
     notes = [f"{note}." for note in result.notes]
-    return View(repr(result), [], rows, notes, spare=("diverged", "deviation"))
+    return View(repr(result), [], rows, notes, spare=("diverged", "deviation"), motions=lambda: _compared(result))
+
+
+def _compared(result: ModelComparison) -> Mapping[str, list[Line]]:
+    """Whole trials as measured and as the first member of each model has them."""
+    trials = list(result.data.trials.values())
+    return _alongside(trials, {one.name: (one.predictor, None) for one in result.models})
 
 
 def profiles(result: Comparison) -> View:
@@ -117,4 +140,19 @@ def voyages(result: VoyageValidation) -> View:
         rows.append({"model": name, "windows": result.n_windows, "median cVDM [%]": result.median(name),
                      **result.classes(name)})  # fmt: skip
     notes = [f"{name}: {note}." for name, of in result.notes.items() for note in of]
-    return View(repr(result), [result.sentence()], rows, notes)
+    return View(repr(result), [result.sentence()], rows, notes, motions=lambda: _windows(result))
+
+
+def _windows(result: VoyageValidation) -> Mapping[str, list[Line]]:
+    """The best, median and worst windows by the first model, as measured and as each model has them."""
+    found: dict[str, list[Line]] = {}
+    for one in result.drawn:
+        runs = {("measured", "measured"): one.measured, **{(name, "model"): of for name, of in one.states.items()}}
+        lines = [
+            Line(*what, one.t, dict(zip(STATES, states.T, strict=True)))
+            for what, states in runs.items()
+            if what[1] == "measured" or np.isfinite(states).all()
+        ]
+        lines[0] = replace(lines[0], columns={**lines[0].columns, "delta": one.delta})
+        found[result.id_of(one)] = lines
+    return found

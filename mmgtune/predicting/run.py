@@ -58,6 +58,10 @@ def predict(
     sigma: dict[str, float] = {}
     given, of_ship = ([], "") if trials is None else of_one_ship(trials)
     notes = noted(whole, given, of_ship)
+    if isinstance(whole, Uncertain) and several.n_members < options.particles:
+        notes.append(
+            f"'{name}' holds {several.n_members} particles, fewer than the {options.particles} asked for: all are taken"
+        )
     if trials is not None:
         sigma = _sigma(given, of_ship, options)
         runs = tuple(on_trials(several, given, options.restart))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..bands import Pooled
-from ..displayed import Displayed
+from ..displayed import Plotted
 from ..documents import finite
 from ..measures import UNITS
 from ..options import VoyageOptions
@@ -122,7 +122,7 @@ class Comparison:
 
 
 @dataclass(frozen=True, eq=False)
-class VoyageValidation(Displayed):
+class VoyageValidation(Plotted):
     """Models scored on the windows of voyages.
 
     predictors  by what they were called
@@ -303,10 +303,15 @@ class VoyageValidation(Displayed):
             **({"bands": self.bands[name].to_dict()} if name in self.bands else {}),
         }
 
+    def id_of(self, one: DrawnWindow) -> str:
+        """What a window that is to be looked at is called: its voyage, and the second that it begins at."""
+        assert self.table is not None  # there are no windows to look at without
+        return str(self.table.ids[one.place])
+
     def _drawn(self, one: DrawnWindow) -> dict[str, Any]:
         assert self.table is not None
         return {
-            "window": self.table.ids[one.place],
+            "window": self.id_of(one),
             "role": one.role,
             "cVDM": {name: finite(float(model.cVDM[one.place])) for name, model in self.table.models.items()},
         }

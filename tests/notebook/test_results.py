@@ -16,6 +16,7 @@ from mmgtune.errors import OptionError, TrialError
 from mmgtune.fitting.comparison import ComparedTrials
 from mmgtune.fleet import FleetRun
 from mmgtune.model import Model
+from mmgtune.motions import motions
 from mmgtune.notebook.kinds import KINDS
 from mmgtune.predictor import as_predictor
 from mmgtune.trial.index_trial import IndexTrial, Stated
@@ -269,6 +270,32 @@ def test_pictures_hold_what_they_are_of(fitted, trials, plt):
     rooms = fitted.plot.coefficients()
     assert [label.get_text() for label in rooms.get_yticklabels()] == list(fitted.theta)
     assert dir(fitted.plot) == ["coefficients", "histories", "tracks"]
+
+
+def test_pictures_of_models_side_by_side(trials, plt):
+    of = [trials["turn_p35"], trials["turn_m35"]]
+    found = mmgtune.compare_models({"one": "suzaku", "other": "suzaku_fam"}, of)
+    assert dir(found.plot) == ["histories", "tracks"]
+    axes = found.plot.tracks()
+    assert [len([line for line in ax.lines if len(line.get_xdata()) > 1]) for ax in axes] == [3, 3]
+    (one,) = motions(found.models[0].predictor, of[:1])
+    shown = [line.get_ydata() for line in axes[0].lines if len(line.get_xdata()) > 1]
+    assert np.array_equal(shown[0], of[0].x)
+    assert np.array_equal(shown[1], one.channel("x"))
+    (u,) = found.plot.histories("turn_m35", "u")
+    assert len(u.lines) == 3
+
+
+def test_pictures_of_voyages_are_those_of_the_windows_drawn(trials, plt, tmp_path):
+    mmgtune.write_trial(replace(trials["turn_p35"], manoeuvre="voyage"), tmp_path / "log.parquet")
+    found = mmgtune.validate_voyages({"one": "suzaku", "other": "suzaku_fam"}, tmp_path)
+    names = [found.id_of(one) for one in found.drawn]
+    axes = np.ravel(found.plot.tracks())
+    assert [ax.get_title() for ax in axes] == names[: len(axes)]
+    x = [line.get_ydata() for line in axes[0].lines if len(line.get_xdata()) > 1]
+    assert [np.array_equal(x[0], found.drawn[0].measured[:, 0]), len(x)] == [True, 3]
+    psi, delta = found.plot.histories(names[-1], ("psi", "delta"))
+    assert [len(psi.lines), len(delta.lines)] == [3, 1]
 
 
 def test_trials_that_are_indices_alone_have_no_picture(plt):

@@ -15,6 +15,7 @@ from mmgtune.model import Model
 from mmgtune.networks import NetworkPredictor
 from mmgtune.options import PredictOptions, SimulateOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
+from mmgtune.particles import Particles
 from mmgtune.predicting import predict, write_prediction
 from mmgtune.predictor import PhysicsPredictor, Prediction, as_predictor
 from mmgtune.profile import load_profile
@@ -164,6 +165,19 @@ def test_any_predictor_is_steered_as_a_model_on_lanes_is(five, wrapper, options)
     np.testing.assert_allclose(found.runs[0].states, expected.runs[0].states, rtol=1e-8, atol=1e-10)
     if wrapper is Pairs:
         assert one.asked > 0
+
+
+def test_no_particle_is_drawn_twice_of_few(tmp_path):
+    profile = load_profile("suzaku")
+    values = profile.value("hull.R_0") * (1.0 + 0.01 * np.arange(12.0))
+    few = Particles(profile, ("hull.R_0",), values[None], {})
+    found = predict(few.predictor(), options=TURN)
+    assert found.predictor.n_members == 12
+    assert len({run[-1].tobytes() for run in found.runs[0].states}) == 12
+    assert any("holds 12 particles, fewer than the 100 asked for: all are taken" in note for note in found.notes)
+    fewer = predict(few.predictor(), options=PredictOptions(turn=("35",), particles=5))
+    assert fewer.predictor.n_members == 5
+    assert not any("asked for" in note for note in fewer.notes)
 
 
 def test_particles_are_drawn_of_what_can_draw_them(five):

@@ -354,7 +354,7 @@ def _of_workbook(path: Path) -> list[Sample]:
     outlines = outlines_of(path)
     logs = logs_among(outlines) or [one.name for one in outlines][-1:]
     heads = {one.name: _head(one.rows[:HEADING]) for one in outlines if one.name in logs}
-    _require_apart(path, {name: heads[name][0] for name in logs})
+    _require_one_sheet(path, {name: heads[name][0] for name in logs})
     # Sheets that are written alike are runs; of others the first is the log.
     alike = [one for one in logs if _alike(heads[logs[0]], heads[one])]
     layout: dict[str, Any] = {"format": "xlsx"}
@@ -377,7 +377,7 @@ def _of_workbook(path: Path) -> list[Sample]:
     return [replace(of, notes=[*notes, *of.notes], part=one if several else "") for one, of in sheets.items()]
 
 
-def _require_apart(path: Path, names: Mapping[str, Sequence[str]]) -> None:
+def _require_one_sheet(path: Path, names: Mapping[str, Sequence[str]]) -> None:
     """Raise LogError for a workbook that has a sheet for each quantity, by the names of the columns of each sheet."""
     found = {}
     for sheet, columns in names.items():
