@@ -7,11 +7,12 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from ..arrays import FloatArray
+from ..displayed import inert
 from ..documents import write_json
 from ..errors import LogError, Problem, kind_of, parts_of
 from ..files import all_or_none, path_of, refuse_existing, refuse_file, require_flag, true_path
@@ -50,6 +51,15 @@ from .yaw import heading_recovered
 REPORT = "import-report.json"
 QUICKEST = 1e-7
 """Time between rows [s] that no logger comes near."""
+
+
+@runtime_checkable
+class HasMap(Protocol):
+    """What a map can be had of, as of a proposal."""
+
+    def map(self) -> LogMap:
+        """The map.  Raises LogError where it asks."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +131,12 @@ class Imported:
     map: str
     refused: tuple[Refused, ...] = ()
 
+    def __repr__(self) -> str:
+        """In a line."""
+        refused = f", {len(self.refused)} refused" if self.refused else ""
+        written = "written" if self.files else "not written"
+        return f"Imported({counted(len(self.trials), 'trial')} by the map {inert(self.map)[:40]}, {written}{refused})"
+
     def to_dict(self) -> dict[str, Any]:
         """The report as written to ``import-report.json``."""
         return {
@@ -147,7 +163,7 @@ class Imported:
 @opened_once()
 def import_logs(
     logs: Path | str | Sequence[Path | str],
-    log_map: LogMap | Path | str,
+    log_map: LogMap | HasMap | Path | str,
     out: Path | str,
     step: float | None = None,
     overwrite: bool = False,
@@ -157,7 +173,7 @@ def import_logs(
     """Write each log as one trial file in the folder ``out``, or several where it has to be cut, and a report beside.
 
     logs        paths of them; of one a path does
-    log_map     what their columns are, or the file that says so
+    log_map     what their columns are, the file that says so, or what ``propose_map`` found
     step        time step of the trials [s]; None: what the map says, else the log's own median
     dry_run     write nothing
     keep_going  import the logs, and the sheets or variables of logs, that can be read where others cannot: these are
@@ -170,6 +186,8 @@ def import_logs(
     require_step(step)
     out = path_of(out)
     paths = paths_of(logs)
+    if isinstance(log_map, HasMap):
+        log_map = log_map.map()
     log_map = log_map if isinstance(log_map, LogMap) else load_map(log_map)
     refuse_file(out)
     require_flag(overwrite)

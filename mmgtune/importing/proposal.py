@@ -54,6 +54,13 @@ class Proposal:
     sample: Sample | None
     cuts: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        """In a line."""
+        told = f"asks for {', '.join(self.asks[:4])}" if self.asks else counted(self.imported or 0, "trial")
+        told = f"{counted(len(self.problems), 'problem')}" if self.problems else told
+        found = counted(len(self.guesses), "quantity", "quantities")
+        return f"Proposal(of {counted(len(self.logs), 'log')}, {found}: {told})"
+
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
         return {

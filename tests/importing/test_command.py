@@ -5,6 +5,7 @@ import signal
 import pytest
 
 from mmgtune import import_logs, propose_map
+from mmgtune.errors import LogError
 from tests.command import run, run_until
 from tests.importing.made import MAP, logged, turn, write_csv
 
@@ -65,6 +66,20 @@ def test_the_library_takes_one_log_and_the_path_of_a_map(folder):
     for one in (log, str(log), [log]):
         assert [trial.id for trial in import_logs(one, folder / "map.toml", "out", dry_run=True).trials] == ["zigzag"]
         assert propose_map(one).text == propose_map([log]).text
+
+
+def test_a_proposal_is_a_map_and_both_say_in_a_line_what_they_are(folder):
+    log = folder / "zigzag.csv"
+    proposal = propose_map(log)
+    assert repr(proposal) == "Proposal(of 1 log, 9 quantities: 1 trial)"
+    found = import_logs(log, proposal, folder / "out")
+    assert repr(found) == "Imported(1 trial by the map map, written)"
+    columns = logged(turn())
+    del columns["rudder"]
+    proposal = propose_map(write_csv(log, columns))
+    assert f"asks for {proposal.asks[0]}" in repr(proposal)
+    with pytest.raises(LogError, match="the map asks for"):
+        import_logs(log, proposal, "out", dry_run=True)
 
 
 def test_stopped_while_reading_leaves_nothing(folder):
