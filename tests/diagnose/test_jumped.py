@@ -109,7 +109,8 @@ def test_a_late_receiver_that_stands_first_is_late(sailed):
     result = diagnose(load_profile("suzaku"), standing_first(sailed, 1.5), options)
     assert [cause.tag for cause in result.causes] == ["position-latency"]
     assert result.verdict == "found"
-    assert "1.5" in result.sentence()
+    (cause,) = result.to_dict()["causes"]
+    assert cause["parameters"]["seconds"]["value"] == pytest.approx(1.5, abs=0.1)
     assert any("runs begin after these" in one for one in result.warnings)
 
 
