@@ -57,7 +57,7 @@ STRONG = {
     "log-misalignment": {"angle": 0.02},
     "speed-scale": {"factor": 1.02, "both": 0.99, "grows": 0.01},
     "log-zero": {"ahead": 0.05, "abeam": -0.03},
-    "gyro-scale": {"factor": 1.03, "curve": -0.05},
+    "gyro-scale": {"factor": 1.03, "curve": 0.05},
     "gyro-bias": {"rate": 0.001},
     "position-latency": {"seconds": 2.5},
     "velocity-filter": {"over_ground": 4.0, "along_axes": 2.0, "yaw_rate": 3.0, "ahead": 1.5},
