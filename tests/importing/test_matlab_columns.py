@@ -224,6 +224,19 @@ def test_what_is_left_out_is_told(tmp_path):
     assert "'wind', which has times of its own" in told.notes[0]
 
 
+@pytest.mark.parametrize(("late", "kept"), [(0.0, True), (3.2, False), (1.7e9, True)])
+def test_structures_as_long_as_each_other_are_joined_where_their_times_are_the_same(tmp_path, late, kept):
+    """Rows of 3.2 s later stood beside those of the motion as if they had been logged at once."""
+    controls = {"t": RUN.t + late, "rpm": 100.0 + RUN.t, "rudder": np.sin(RUN.t)}
+    motion = {"t": RUN.t, **{name: np.cos(RUN.t + k) for k, name in enumerate("xyhur")}}
+    found = columns_of(saved(tmp_path / "log.mat", {"controls": controls, "motion": motion}))
+    assert ("controls.rpm" in found.names) is kept
+    assert "motion.x" in found.names
+    told = "left out: 'controls', which has times of its own; bring it to those of the others first"
+    assert (told in found.notes) is not kept
+    assert ("controls.rudder" in found.other) is not kept
+
+
 def test_a_structure_beside_vectors_keeps_its_name(tmp_path):
     wind = {"t": RUN.t, "speed": 5.0 + np.sin(RUN.t), "dir": np.full(len(RUN.t), 30.0)}
     proposal = propose_map(saved(tmp_path / "log.mat", HELD | {"wind": wind}))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +28,10 @@ RUN = 4
 """Fields, or columns, that two runs have in common at least."""
 RISING = 0.9
 """Share of steps that go up from which numbers may be time."""
+TIMES = ("t", "time", "times", "timestamp", "seconds")
+"""What a column of times is called in a structure, in small letters."""
+EPOCH = 1e5
+"""Difference of two first times, in their unit, from which these are counted from another beginning."""
 _DATEVEC = ((1900, 2200), (1, 12), (1, 31), (0, 24), (0, 59), (0, 60.001))
 """Least and most of the columns that ``datevec`` and ``clock`` make."""
 
@@ -91,6 +96,10 @@ def columns_in(held: Mapping[str, Value], path: Path, variable: str = "") -> Col
     lengths = [len(value) for value in arrays.values()]
     usual = max(set(lengths), key=lambda length: (lengths.count(length), length), default=0)
     columns = {name: value for name, value in arrays.items() if len(value) == usual}
+    for within in _of_other_times(columns):
+        notes.append(f"left out: '{within}', which has times of its own; bring it to those of the others first")
+        gone = [name for name in columns if name.rpartition(".")[0] == within]
+        other |= {name: f"{len(columns.pop(name))} values at other times" for name in gone}
     together = list(dict.fromkeys(name.partition(".")[0] for name in columns if "." in name))
     if len(together) > 1:
         shown = listed([f"'{one}'" for one in together], 6)
@@ -111,6 +120,28 @@ def columns_in(held: Mapping[str, Value], path: Path, variable: str = "") -> Col
     if unread := [f"'{name}' ({kind})" for name, kind in other.items() if "complex" in kind or "dimensions" in kind]:
         notes.append(f"left out: {listed(unread, 6)}")
     return Columns(list(columns), list(columns.values()), other | uneven, notes, variable if several else "")
+
+
+def _of_other_times(columns: Mapping[str, FloatArray | list[str]]) -> list[str]:
+    """Structures whose time is not that of the one with most columns, by what stands before the last point of their
+    columns' names.  Clocks with another beginning of time are not compared."""
+    sizes = Counter(name.rpartition(".")[0] for name in columns)
+    times = {
+        name.rpartition(".")[0]: value
+        for name, value in columns.items()
+        if isinstance(value, np.ndarray) and name.rpartition(".")[2].lower() in TIMES
+    }
+    if len(times) < 2:
+        return []
+    most = max(times, key=lambda one: sizes[one])
+    step = float(np.median(np.abs(np.diff(times[most]))))
+    found = []
+    for within, own in times.items():
+        began = float(abs(own[0] - times[most][0]))
+        off = own - times[most] if began < EPOCH else own - own[0] - (times[most] - times[most][0])
+        if not np.all(np.abs(off) <= 0.5 * step):
+            found.append(within)
+    return found
 
 
 def runs_in(held: Mapping[str, Value]) -> list[str]:
