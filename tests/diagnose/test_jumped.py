@@ -11,8 +11,10 @@ from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
 from mmgtune.report import render
 from mmgtune.trial import TrialSet, check_trial, load_trials
+from mmgtune.trial.checks.position_jumps import first_positions_off
 from mmgtune.trial.pieces import begun_at
 from tests.hidden.plant import simulate, write
+from tests.trial.made import made
 
 OPTIONS = DiagnoseOptions(effects=("gyro-drift", "heading-bias", "current", "rudder-gain"))
 
@@ -84,6 +86,16 @@ def test_first_positions_that_stand_still_are_left_out(sailed, seconds, rows):
     assert from_the_track_on(sailed) == (sailed, {})
     assert in_parts(late) == (late, {})
     assert not any("off the track" in found.what for one in sailed.trials.values() for found in check_trial(one))
+
+
+@pytest.mark.parametrize("step", [1e-3, 0.02, 20.0])
+def test_first_positions_of_logs_of_any_step(step):
+    """Of a record that is shorter than the beginning that is looked at, a part of it is."""
+    one = made(samples=700, dt=step, seed=1)
+    assert not any("off the track" in found.what for found in check_trial(one))
+    x = one.x.copy()
+    x[0] += 1e3
+    assert first_positions_off(replace(one, x=x)) == (1, pytest.approx(1e3, rel=0.1))
 
 
 def test_of_what_would_be_no_trial_then_nothing_is_left_out(sailed):

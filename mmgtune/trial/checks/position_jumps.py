@@ -64,7 +64,7 @@ def first_positions_off(trial: Trial) -> tuple[int, float] | None:
     left = _without_way(trial, n)
     if left is None:
         return None
-    most = int(np.ceil(FIRST / np.median(np.diff(trial.t))))
+    most = min(int(np.ceil(FIRST / np.median(np.diff(trial.t)))), n)
     k = np.arange(n) - 0.5 * (n - 1)
     off = []
     for row in range(most):  # the value of the line ``most - row`` samples before it begins
@@ -75,7 +75,8 @@ def first_positions_off(trial: Trial) -> tuple[int, float] | None:
     usual = float(np.nanmedian(off[0])) if np.isfinite(off[0]).any() else np.inf
     if not float(off[0][0]) > max(AWAY * usual, AT_ONCE * _fast(trial)):
         return None
-    return max(row for row, one in enumerate(off) if float(one[0]) > NEAR * usual) + 1, float(off[0][0])
+    of_the_track = (row for row, one in enumerate(off) if not float(one[0]) > NEAR * usual)
+    return next(of_the_track, most), float(off[0][0])
 
 
 def _samples(trial: Trial) -> int:
