@@ -7,10 +7,8 @@ from dataclasses import replace
 
 from ...phrases import listed
 from ...trial import Trial, TrialSet
-from ...trial.checks.saturation import in_units
+from ...trial.checks.saturation import end_in_words
 from ...trial.checks.sensor_ends import ends_of, without_ends
-
-_SENSORS = {"u": "the speed log ends", "r": "the yaw rate ends"}
 
 
 def within_range(trials: TrialSet, whole: Mapping[str, Trial]) -> tuple[TrialSet, dict[str, float]]:
@@ -27,4 +25,4 @@ def within_range(trials: TrialSet, whole: Mapping[str, Trial]) -> tuple[TrialSet
 
 def in_words(ended: Mapping[str, float]) -> str:
     """Which sensors end where; "" for none."""
-    return listed([f"{_SENSORS[name]} at {in_units(name, value)}" for name, value in ended.items()])
+    return listed([end_in_words(name, value) for name, value in ended.items()])

@@ -47,9 +47,7 @@ def beginnings_in_words(off: Mapping[str, float], runs: int) -> str:
     """That first positions are off, and how far; "" for none."""
     if not off:
         return ""
-    least, largest = (f"{end(off.values()):.3g}" for end in (min, max))
-    by = largest if least == largest else f"{least} to {largest}"
-    return f"the first positions are off the track by {by} m in {len(off)} of {runs} runs"
+    return f"the first positions are off the track by {_span(off)} m in {len(off)} of {runs} runs"
 
 
 def in_words(jumped: Mapping[str, float]) -> str:
@@ -58,6 +56,9 @@ def in_words(jumped: Mapping[str, float]) -> str:
         return ""
     if len(jumped) <= NAMED:
         return f"the position jumps in {listed([f'{id} by {size:.3g} m' for id, size in jumped.items()])}"
-    least, largest = (f"{end(jumped.values()):.3g}" for end in (min, max))
-    by = largest if least == largest else f"{least} to {largest}"
-    return f"the position jumps in {len(jumped)} runs, by {by} m"
+    return f"the position jumps in {len(jumped)} runs, by {_span(jumped)} m"
+
+
+def _span(sizes: Mapping[str, float]) -> str:
+    """From the least to the largest of some, once where they are alike."""
+    return " to ".join(dict.fromkeys(f"{end(sizes.values()):.3g}" for end in (min, max)))

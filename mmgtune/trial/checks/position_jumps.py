@@ -39,7 +39,7 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     left = _without_way(trial, n)
     if left is None:
         return []
-    ahead = _line_end(n)
+    ahead = _line_at(n, 0.5 * n)  # half a sample behind its last
     # Rows k + n: what lies before predicts the middle of the step to row k + n, and so does what lies after.
     steps = [
         np.lib.stride_tricks.sliding_window_view(one[n:], n) @ ahead[::-1]
@@ -65,18 +65,14 @@ def first_positions_off(trial: Trial) -> tuple[int, float] | None:
     if left is None:
         return None
     most = min(int(np.ceil(FIRST / np.median(np.diff(trial.t)))), n)
-    k = np.arange(n) - 0.5 * (n - 1)
-    off = []
-    for row in range(most):  # the value of the line ``most - row`` samples before it begins
-        ahead = 1.0 / n + k * (-0.5 * (n - 1) - (most - row)) / float(k @ k)
-        lines = [np.lib.stride_tricks.sliding_window_view(one[most:], n) @ ahead for one in left]
-        ends = [one[row : row + len(line)] for one, line in zip(left, lines, strict=True)]
-        off.append(np.hypot(*(end - line for end, line in zip(ends, lines, strict=True))))
-    usual = float(np.nanmedian(off[0])) if np.isfinite(off[0]).any() else np.inf
-    if not float(off[0][0]) > max(AWAY * usual, AT_ONCE * _fast(trial)):
+    before = [_line_at(n, -0.5 * (n - 1) - (most - row)) for row in range(most)]
+    lines = [np.lib.stride_tricks.sliding_window_view(one[most:], n) @ before[0] for one in left]
+    everywhere = np.hypot(*(one[: len(line)] - line for one, line in zip(left, lines, strict=True)))
+    usual = float(np.nanmedian(everywhere)) if np.isfinite(everywhere).any() else np.inf
+    off = [float(np.hypot(*(one[row] - one[most : most + n] @ before[row] for one in left))) for row in range(most)]
+    if not off[0] > max(AWAY * usual, AT_ONCE * _fast(trial)):
         return None
-    of_the_track = (row for row, one in enumerate(off) if not float(one[0]) > NEAR * usual)
-    return next(of_the_track, most), float(off[0][0])
+    return next((row for row, one in enumerate(off) if not one > NEAR * usual), most), off[0]
 
 
 def _samples(trial: Trial) -> int:
@@ -136,10 +132,10 @@ def _without_spikes(values: FloatArray) -> FloatArray:
     return smooth
 
 
-def _line_end(n: int) -> FloatArray:
-    """(n,) weights that give the end, half a sample ahead, of the line through n equidistant samples."""
+def _line_at(n: int, place: float) -> FloatArray:
+    """(n,) weights that give the line through n equidistant samples at a place, in samples from their middle."""
     k = np.arange(n) - 0.5 * (n - 1)
-    return np.asarray(1.0 / n + 0.5 * n * k / float(k @ k))
+    return np.asarray(1.0 / n + place * k / float(k @ k))
 
 
 def _peaks(size: FloatArray, least: float, apart: int) -> list[int]:

@@ -30,16 +30,16 @@ smooth one, which may stand still for good."""
 
 
 _ENDS = {
-    "u": ("the speed log ends at {}", "positions", "goes", "log", "'x', 'y' and 'u'"),
-    "r": ("the yaw rate ends at {}", "heading", "turns", "gyro", "'psi' and 'r'"),
+    "u": ("positions", "goes", "log", "'x', 'y' and 'u'"),
+    "r": ("heading", "turns", "gyro", "'psi' and 'r'"),
 }
 
 
-def in_units(name: str, value: float) -> str:
-    """A speed ahead or a yaw rate in units that people read."""
+def end_in_words(name: str, value: float) -> str:
+    """Where the log of the speed ahead or of the yaw rate ends, in units that people read."""
     if name == "r":
-        return f"{value / DEG:.3g} deg/s ({value / DEG * 60.0:.3g} deg/min)"
-    return f"{value:.3g} m/s"
+        return f"the yaw rate ends at {value / DEG:.3g} deg/s ({value / DEG * 60.0:.3g} deg/min)"
+    return f"the speed log ends at {value:.3g} m/s"
 
 
 def saturation_findings(trial: Trial, where: str, ends: Mapping[str, End]) -> list[Finding]:
@@ -64,12 +64,12 @@ def saturation_findings(trial: Trial, where: str, ends: Mapping[str, End]) -> li
                         "saturated",
                     )
                 )
-    for name, (what, follows, faster, sensor, columns) in _ENDS.items():
+    for name, (follows, faster, sensor, columns) in _ENDS.items():
         if name in ends and name not in stand:
             found.append(
                 Finding(
                     "warning",
-                    what.format(in_units(name, ends[name].value)),
+                    end_in_words(name, ends[name].value),
                     f"{where}, columns {columns}",
                     f"it follows the {follows} up to there, and stays there where the ship {faster} faster: the "
                     f"{sensor}, or what logs it, is at the end of its range",

@@ -63,10 +63,14 @@ def ends_of(trials: Iterable[Trial]) -> dict[str, End]:
     log that goes no further than a certain value misses far less of that than one with another scale.
     """
     every = list(trials)
-    told = {"u": [_ways(one) for one in every], "r": [_turns(one) for one in every]}
-    ends = {name: _end(*(np.concatenate(parts) for parts in zip(*of, strict=True))) for name, of in told.items() if of}
-    samples = float(np.median([_stretch(one) for one in every])) if every else 0.0
-    return {name: replace(one, samples=samples) for name, one in ends.items() if one is not None}
+    if not every:
+        return {}
+    samples = float(np.median([_stretch(one) for one in every]))
+    ends = {}
+    for name, by_stretch in (("u", _ways), ("r", _turns)):
+        told, logged = (np.concatenate(parts) for parts in zip(*map(by_stretch, every), strict=True))
+        ends[name] = _end(told, logged, samples)
+    return {name: one for name, one in ends.items() if one is not None}
 
 
 def without_ends(trial: Trial, ends: Mapping[str, End]) -> Trial:
@@ -125,8 +129,8 @@ def _means(trial: Trial, told: FloatArray, logged: FloatArray) -> tuple[FloatArr
     return sums[0][whole], sums[1][whole]
 
 
-def _end(told: FloatArray, logged: FloatArray) -> End | None:
-    """Where a log ends that goes as is told otherwise; None for nowhere."""
+def _end(told: FloatArray, logged: FloatArray, samples: float) -> End | None:
+    """Where a log ends that goes as is told otherwise, by means over so many samples; None for nowhere."""
     if len(told) < 2 * SO_MANY or not np.any(told) or not np.any(logged):
         return None
     scale = float(told @ logged) / float(told @ told)
@@ -140,4 +144,4 @@ def _end(told: FloatArray, logged: FloatArray) -> End | None:
     if there.sum() < SO_MANY or far_beyond or float(left.min()) >= most:
         return None
     shown = np.abs(logged[there])
-    return End(float(np.mean(shown)), float(np.std(shown)), 1.0)
+    return End(float(np.mean(shown)), float(np.std(shown)), samples)
