@@ -13,7 +13,7 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.answering import saying
-from mmgtune.diagnose.answering.judging import Judge
+from mmgtune.diagnose.answering.judging import Judge, _of_effects, _telling_as_much
 from mmgtune.diagnose.bench.hypotheses import Hypothesis, known_causes
 from mmgtune.diagnose.bench.noise import ChannelNoise
 from mmgtune.diagnose.bench.workbench import Point, make_workbench
@@ -35,8 +35,9 @@ from mmgtune.diagnose.held_out.unseen import Unseen
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.searching.search import Found
-from mmgtune.diagnose.signatures.intervals import Estimate
+from mmgtune.diagnose.signatures.intervals import Estimate, _in_units
 from mmgtune.effects import Visited, effects, find_effect
+from mmgtune.fitting.box import Box
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, tuned
 from mmgtune.trial import load_trials, visited_by
@@ -568,6 +569,9 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.05, of_traces=0.02), "more than noise"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.01), ""),
         (sum_of(CLEAR, left=0.03), ""),
+        (sum_of(CLEAR, CLEAR, left=0.03, tags=("memory", "memory")), ""),  # one of side force and moment, more of one
+        (sum_of(CLEAR, CLEAR, left=0.03, tags=("hull-term", "hull-term")), "more than noise"),
+        (sum_of(*4 * [CLEAR], tags=("memory", "memory", "memory", "wind")), ""),
         (sum_of(CLEAR, CLEAR, before=1.09), "little beside noise"),
         (sum_of(CLEAR, CLEAR, before=1.12), ""),
         (sum_of(CLEAR, before=1.03), ""),
@@ -615,6 +619,44 @@ GROUP = (("a", "b"),)
 def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
     assert (one.unclear == "") == (said == "")
     assert said in one.unclear
+
+
+def rival(tag, **more):
+    return SimpleNamespace(hypothesis=SimpleNamespace(tag=tag, by="", variant=("size",), **more))
+
+
+def test_who_doubts_a_second_form_of_an_effect_does_not_doubt_the_effect():
+    memory, terms = (SimpleNamespace(tag=tag, effect=find_effect(tag)) for tag in ("memory", "hull-term"))
+    both = [rival("loading")]
+    assert _of_effects([memory, memory], [[], both]) == [[], []]
+    assert _of_effects([memory, memory], [both, both]) == [both, both]
+    assert _of_effects([terms, terms], [[], both]) == [[], both]  # each is another term
+    assert _of_effects([memory, terms], [[], both]) == [[], both]
+
+
+@pytest.mark.parametrize(
+    ("by", "told", "J", "named"),
+    [
+        ("trial", 0.97, 0.32, ["backlash"]),
+        ("trial", 0.97, 0.9, []),
+        ("trial", 0.3, 0.32, []),
+        ("", 0.97, 0.32, []),
+    ],
+)
+def test_what_tells_unseen_runs_as_well_as_values_of_each_may_be_the_cause(by, told, J, named):
+    """Play of a degree turns the blade less in each turn by another share: "the gain differed from run to run"."""
+    cause = SimpleNamespace(tag="rudder-gain", by=by)
+    candidates = [
+        SimpleNamespace(effect="backlash", parameters=("size",), by="", J_test=J),
+        SimpleNamespace(effect="flap", parameters=("size",), by="", J_test=4.6),
+        SimpleNamespace(effect="wind", parameters=("size",), by="", J_test=None),
+        SimpleNamespace(effect="clock-offset", parameters=("size",), by="trial", J_test=0.3),
+    ]
+    refits = [rival(one.effect) for one in candidates]
+    found = SimpleNamespace(causes=[cause], steps=[SimpleNamespace(refits=refits)])
+    gain = SimpleNamespace(J=(7.5, 0.22))
+    result = SimpleNamespace(causes=[SimpleNamespace(gain_test=told)], candidates=candidates, gain=gain)
+    assert [one.hypothesis.tag for one in _telling_as_much(result, found)] == named
 
 
 @pytest.mark.parametrize(
@@ -735,19 +777,38 @@ def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, struct
 
 
 @pytest.mark.parametrize(
-    ("tag", "estimated", "at_ends"),
+    ("tag", "ended", "at_ends"),
     [
-        ("propeller-side-force", {"force": (-1.0, -1.0, -0.8), "moment": (-0.99998, -1.0, -0.83)}, True),
-        ("propeller-side-force", {"force": (-1.0, -1.0, -0.8), "moment": (0.9, 0.8, 1.0)}, False),
-        ("wave-drift", {"force": (9e4, 8e4, 9e4), "direction": (1.0, 0.9, 1.1)}, True),
-        ("steering-lag", {"rate_limit": (0.04, 0.03, None)}, False),
+        ("propeller-side-force", {"force": True, "moment": True}, True),
+        ("propeller-side-force", {"force": True, "moment": False}, False),
+        ("wave-drift", {"force": True, "direction": False}, True),
+        ("steering-lag", {"rate_limit": False}, False),
         ("current", {}, False),
     ],
 )
-def test_whether_a_cause_is_at_the_end_of_its_range(tag, estimated, at_ends):
+def test_whether_a_cause_is_at_the_end_of_its_range(tag, ended, at_ends):
     effect = find_effect(tag)
-    sizes = {f"{effect.kind}.{name}": Estimate(name, *ends, 1.0) for name, ends in estimated.items()}
+    sizes = {f"{effect.kind}.{name}": Estimate(name, 1.0, 0.9, 1.0, 1.0, at_end=end) for name, end in ended.items()}
     assert Cause(tag, effect, sizes, 0.0, None).at_ends is at_ends
+
+
+@pytest.mark.parametrize(
+    ("searched", "at_end"),
+    [
+        ((0.97, 0.01), False),  # 1.5 deviations from the end
+        ((0.97, 0.06), False),
+        ((0.99, 0.06), True),  # a draught of 1.39 times the profile's, of 1.4, that stood for a depth of water
+        ((1.0, 0.06), True),
+        ((0.3, 0.12), False),  # a rate of 0.05 rad/s, somewhere from 0.03 to 0.3: far from an end, by its reciprocal
+        ((0.0, 0.12), True),
+    ],
+)
+@pytest.mark.parametrize("reciprocal", [(), (0,)])
+def test_an_interval_cut_off_beside_its_value_is_at_an_end(searched, at_end, reciprocal):
+    z, deviation = searched
+    box = Box(("effects.a.b",), np.array([0.05]), np.array([0.5]), np.array([40.0]), reciprocal=reciprocal)
+    bench, point = SimpleNamespace(sub_box=lambda _: box), SimpleNamespace(names=box.names, unit=np.array([z]))
+    assert _in_units(bench, point, box.names, np.array([[deviation**2]]))["effects.a.b"].at_end is at_end
 
 
 @pytest.mark.parametrize(

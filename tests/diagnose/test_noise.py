@@ -86,6 +86,38 @@ def test_positions_may_wander_far_beyond_their_white_noise_where_the_rest_does_n
         assert found == naive
 
 
+def shapes():
+    """Residuals of one channel far beyond its white noise, (RUNS, SAMPLES), by what they are, and how rough that is."""
+    drawn = np.random.default_rng(2)
+    t = np.arange(float(SAMPLES))
+    error = 6.0 * np.sin(t / 40.0 + np.arange(RUNS)[:, None]) + np.abs(t % 150.0 - 75.0) / 20.0
+    fades = NoiseModel(Cases(), dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), ChannelNoise(0.967, 40.0, 0.0)))
+    memory = fades.restore(drawn.standard_normal(Cases.rows.size)).reshape(RUNS, SAMPLES, CHANNELS)[:, :, 0]
+    white = drawn.standard_normal((RUNS, SAMPLES))
+    return {
+        "noise that fades": (memory, True),
+        "noise that fades, and white noise beside": (memory + 3.0 * white, False),
+        "an error of the model": (error, False),
+        "an error of the model in white noise": (error + white, False),
+        "an error of the model, hardly any noise": (error + 0.01 * white, False),
+    }
+
+
+@pytest.mark.parametrize("what", shapes())
+def test_noise_of_which_all_fades_is_told_from_an_error_of_the_model(what):
+    """Of sensors that wandered, with nothing white in it, "35 times the noise" was left that no cause explained."""
+    values, rough = shapes()[what]
+    residuals = np.random.default_rng(3).standard_normal(Cases.rows.shape)
+    residuals[:, :, 5] = values
+    fitted = fit_of_slow_changes(5)
+    left = fitted(residuals.reshape(-1))
+    found = estimate(Cases(), left, fitted)
+    assert found.channels["r"].rough == rough
+    assert found.may_be_error != rough
+    if rough:  # what was fitted to it is put back
+        assert found.channels["r"].variance > 1.2 * estimate(Cases(), left).channels["r"].variance
+
+
 def test_a_rudder_logged_in_whole_degrees_may_have_been_anywhere_between():
     """For as long as it shows the same; orders of a few angles are not taken for that."""
     drawn = np.random.default_rng(3).standard_normal((4, 400))

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from mmgtune.diagnose.answering.judging import _of_kin
 from mmgtune.diagnose.bench.hypotheses import Hypothesis
 from mmgtune.diagnose.searching import search
 from mmgtune.diagnose.searching.refit import Refit, believable_first, kin_among, rivals_among
@@ -81,8 +82,20 @@ def test_where_chance_brings_all_of_it_nothing_comes_first():
 def test_a_wind_may_be_meant_where_the_drift_of_waves_fits_badly(wind, kin):
     drift = fitted("wave-drift", 340_000.0, 1.0, 0.0)
     others = [fitted("current", 200_000.0, 1.0, 0.0), fitted("wind", wind, 1.0, 0.0)]
-    assert [one.hypothesis.tag for one in kin_among([drift, *others])] == kin
+    assert [one.hypothesis.tag for one in kin_among([drift, *others], "wave-drift")] == kin
     assert rivals_among([drift, *others]) == []
+
+
+@pytest.mark.parametrize(
+    ("left", "wind", "kin"), [(0.2, 337_000.0, True), (0.2, 330_000.0, False), (0.0, 337_000.0, False)]
+)
+def test_where_a_little_more_than_noise_is_left_the_form_of_a_force_may_be_off(left, wind, kin):
+    """Waves of another hand, whose drift had an envelope, were a wind that differed from run to run."""
+    looked_at = [fitted("wave-drift", 340_000.0, 1.0, 0.0), fitted("current", 339_000.0, 1.0, 0.0)]
+    looked_at.append(fitted("wind", wind, 1.0, 0.0))
+    found = SimpleNamespace(causes=[looked_at[0].hypothesis], steps=[SimpleNamespace(refits=looked_at)])
+    of = _of_kin(SimpleNamespace(leftover=SimpleNamespace(unknown=left)), found)
+    assert [one.hypothesis.tag for one in of] == ["wind"] * kin
 
 
 @pytest.mark.parametrize("looked_at", [True, False])

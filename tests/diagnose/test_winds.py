@@ -203,7 +203,9 @@ def test_a_form_at_the_end_of_its_range_is_told():
     """A wind of 8 m/s on another hull was 6.2 +- 0.7 m/s, with two and a half times the force across."""
     wind = find_effect("wind")
     sizes = {"speed": (6.2, 5.5, 6.9), "across": (2.5, 2.1, 2.5), "turning": (1.4, 0.8, 2.0)}
-    estimated = {f"effects.wind.{name}": Estimate(name, *values, 0.1) for name, values in sizes.items()}
+    estimated = {
+        f"effects.wind.{name}": Estimate(name, *values, 0.1, at_end=name == "across") for name, values in sizes.items()
+    }
     (said,) = _deformed([Cause("wind", wind, estimated, 0.0, None), Cause("integration-step", None, {}, 0.0, None)])
     assert "Of wind a part of its form ended at the end of its range (factor on the force across" in said
     assert "2.5)" in said

@@ -19,7 +19,7 @@ from ...trial import Coverage, Trial
 from ..bench.hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
 from ..bench.of_hull import in_words as explained_in_words
 from ..bench.workbench import Point, Workbench
-from ..causes.belief import MOSTLY
+from ..causes.belief import MOSTLY, TOLD
 from ..causes.by_run import ByRun
 from ..causes.cause import Candidate, Cause, Trace
 from ..causes.contributions import Aside, Contribution, contributions, with_only
@@ -42,6 +42,13 @@ from .separate import Suggestion, suggest
 OF_ANOTHER_FORM = 1.0
 """Variance beyond noise, as a share of it, from which on what a single cause leaves says that its form is another."""
 
+A_LITTLE_OFF, NEARLY_ALL = 0.1, 0.99
+"""That variance from which it may be a little off, and share of the fall of chi-squared from which an effect that acts
+much like it does as well then: wind and the drift of waves."""
+
+AS_UNSEEN = 0.95
+"""Share of what values of each run remove of the error on test trials, estimated on a part of these, from which a cause
+that is the same for all of them, and sees none, may be the cause as well."""
 
 MUCH_OPEN = 2.0
 """Variance that inputs leave open, over that of the noise, from which windows are advised where runs are long."""
@@ -191,10 +198,9 @@ class Judge:
         if result.verdict in ("unexplained", "interrupted") or not found.causes:
             return result
         self.hooks.on_phase("comparing the causes with their rivals")
-        rivals = [rivals_of(self.bench, found, cause) for cause in found.causes]
-        if result.leftover.unknown > OF_ANOTHER_FORM and len(found.causes) == 1 and not rivals[0]:
-            step = step_of(found, found.causes[0])
-            rivals = [kin_among(step.refits) if step else []]
+        rivals = _of_effects(found.causes, [rivals_of(self.bench, found, cause) for cause in found.causes])
+        if len(found.causes) == 1 and not rivals[0]:
+            rivals = [_of_kin(result, found) or _telling_as_much(result, found)]
         groups = tuple(
             (cause.tag, *(rival.hypothesis.tag for rival in of))
             for cause, of in zip(found.causes, rivals, strict=True)
@@ -202,6 +208,13 @@ class Judge:
         )
         suggestion = _suggestion(self.bench, found, rivals)
         return replace(result, groups=groups, suggestion=suggestion, interrupted=self.hooks.stop())
+
+
+def _of_effects(causes: Sequence[Hypothesis], rivals: Sequence[list[Refit]]) -> list[list[Refit]]:
+    """Rivals of each cause; none of a further form of an effect that another form tells: who doubts the time constant
+    of the moment besides does not doubt the memory."""
+    told = {cause.tag for cause, of in zip(causes, rivals, strict=True) if not (of or cause.effect.one_of_many)}
+    return [[] if cause.tag in told else of for cause, of in zip(causes, rivals, strict=True)]
 
 
 def _fewer(result: Diagnosis, found: Found) -> list[tuple[list[Hypothesis], Doubted | None]]:
@@ -327,6 +340,34 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
 
 def _promising(refit: Refit, step: Step) -> bool:
     return refit.gain >= 0.05 * step.refits[0].gain
+
+
+def _of_kin(result: Diagnosis, found: Found) -> list[Refit]:
+    """The effect that acts much like a single cause and may be meant, where this leaves more than noise."""
+    (cause,), left = found.causes, result.leftover.unknown
+    if left > OF_ANOTHER_FORM:
+        step = step_of(found, cause)
+        return kin_among(step.refits, cause.tag) if step else []
+    return kin_among(found.steps[0].refits, cause.tag, NEARLY_ALL) if left > A_LITTLE_OFF else []
+
+
+def _telling_as_much(result: Diagnosis, found: Found) -> list[Refit]:
+    """Refits of the first look that tell test trials about as well as values of each run, which are estimated on a part
+    of these: play of a linkage turns the blade less by a share that differs between turns.
+
+    However little such a cause explains where it was fitted: what the noise of the log does there is not its doing.
+    """
+    cause, named = found.causes[0], result.causes[0]
+    if not cause.by or not named.gain_test or named.gain_test < TOLD or result.gain.J[0] is None:
+        return []
+    told = {
+        (one.effect, one.parameters)
+        for one in result.candidates
+        if not one.by and one.effect != cause.tag and one.J_test is not None
+        if 1.0 - one.J_test / result.gain.J[0] >= AS_UNSEEN * named.gain_test
+    }
+    refits = [one for one in found.steps[0].refits if not one.hypothesis.by]
+    return [one for one in refits if (one.hypothesis.tag, tuple(one.hypothesis.variant)) in told]
 
 
 def _explained(found: Found, before: Leftover, left: Leftover) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from ...components import UNTAGGED
-from ...effects import Effect, effects
+from ...effects import Effect, effects, find_effect
 from ...fitting.box import AT
 from ...fitting.one_sided import LOPSIDED_HULL
 from ...model import Model
@@ -77,6 +77,13 @@ class Hypothesis:
         """Effect, its parameters where it could have others, and whose they are."""
         label = self.tag if len(self.effect.variants) == 1 else f"{self.tag} ({', '.join(self.variant)})"
         return f"{label}, one for each {IN_WORDS[self.by]}" if self.by else label
+
+
+def n_terms(tags: Sequence[str]) -> int:
+    """Terms of a sum of causes by their tags: forms of one effect are one, a memory of the side force and another of
+    the moment; of many of one kind each counts."""
+    alike = {tag for tag in tags if (effect := find_effect(tag)) is not None and not effect.one_of_many}
+    return len(alike) + sum(tag not in alike for tag in tags)
 
 
 def known_causes(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -29,6 +30,11 @@ NEAR = 4.0
 POSITIONS = ("x", "y")
 """Channels of which a satellite receiver's errors wander far and slowly; those of a model show in the others too."""
 
+AS_ROUGH, BY_CHANCE, LESS = 0.1, 6.0, 2.0
+"""How far the second differences of residuals, over the first in variance, may be from those of noise that fades and
+has no white part, 3 less its autocorrelation; and how far by chance, and how much less than that they are mostly, times
+the square root of the number of samples.  White noise brings more of them, an error of the model hardly any."""
+
 NOTICED = 4.0
 """A fading part counts from this many standard errors of the autocorrelation."""
 
@@ -40,11 +46,14 @@ class ChannelNoise:
     phi     autocorrelation of neighbouring samples of the fading part
     fading  its variance
     white   variance of the white part
+    rough   whether neighbouring residuals differ as those of fading noise without a white part do, and not as an error
+            of the model does
     """
 
     phi: float = 0.0
     fading: float = 0.0
     white: float = 1.0
+    rough: bool = False
 
     @property
     def variance(self) -> float:
@@ -97,8 +106,9 @@ class NoiseModel:
     @property
     def may_be_error(self) -> bool:
         """Whether so much more than white noise is left beside positions that it may be an error of the model."""
-        moving = [noise.variance for channel, noise in self.channels.items() if channel not in POSITIONS]
-        return max(moving or [noise.variance for noise in self.channels.values()], default=0.0) > NEAR
+        moving = [noise for channel, noise in self.channels.items() if channel not in POSITIONS]
+        seen = moving or list(self.channels.values())
+        return any(noise.variance > NEAR and not noise.rough for noise in seen)
 
     def apply(self, values: FloatArray, out: FloatArray | None = None) -> FloatArray:
         """Residuals (n_residuals, ...) or their derivatives with noise of variance 1 and no memory.
@@ -186,9 +196,11 @@ def estimate(
     fitted  what fitting left of residuals (n_residuals, k): it takes away much of what fades slowly, of which a run has
             few independent samples.  Simulated noise shows how much; None where nothing was fitted.
     """
-    found = _autocovariances(cases, residuals[:, None])
+    found, uneven = _autocovariances(cases, residuals[:, None]), _unevenness(cases, residuals)
     counts = {channel: sum(map(len, series)) for channel, series in rows_of_channels(cases).items()}
-    model = NoiseModel(cases, {channel: _decompose(found[channel], counts[channel]) for channel in found})
+    model = NoiseModel(
+        cases, {channel: _decompose(one, counts[channel], uneven[channel]) for channel, one in found.items()}
+    )
     if fitted is None or model.may_be_error:
         return model
     plain = np.random.default_rng(0).standard_normal((len(residuals), DRAWS))
@@ -197,7 +209,7 @@ def estimate(
         """Noise of channels, with what fitting takes of the noise assumed put back."""
         left = _autocovariances(cases, fitted(assumed.restore(plain)))
         taken = {channel: assumed.channels[channel].autocovariance - left[channel] for channel in channels}
-        return {channel: _decompose(found[channel] + one, counts[channel]) for channel, one in taken.items()}
+        return {name: _decompose(found[name] + one, counts[name], uneven[name]) for name, one in taken.items()}
 
     # What fitting leaves of white noise alternates, which hides noise that fades.
     pure = NoiseModel(cases, {name: ChannelNoise(white=float(max(one[0], 1e-12))) for name, one in found.items()})
@@ -225,7 +237,17 @@ def _autocovariances(cases: Cases, values: FloatArray) -> dict[str, FloatArray]:
     return found
 
 
-def _decompose(covariance: FloatArray, n: int) -> ChannelNoise:
+def _unevenness(cases: Cases, residuals: FloatArray) -> dict[str, float]:
+    """Variance of second differences over that of first ones by channel, of residuals (n_residuals,) pooled."""
+    found = {}
+    for channel, series in rows_of_channels(cases).items():
+        first, second = (np.concatenate([np.diff(residuals[rows], n=order) for rows in series]) for order in (1, 2))
+        found[channel] = float(np.mean(second**2) / np.mean(first**2)) if first.any() and len(second) else 0.0
+    return found
+
+
+def _decompose(covariance: FloatArray, n: int, uneven: float) -> ChannelNoise:
+    """Noise of a channel of n samples from its autocovariances and what ``_unevenness`` gives."""
     variance = float(max(covariance[0], 1e-12))
     lagged = covariance[1:]
     if float(np.sum(lagged)) <= NOTICED * variance * np.sqrt(LAGS / n):
@@ -233,7 +255,8 @@ def _decompose(covariance: FloatArray, n: int) -> ChannelNoise:
     phi = float(np.clip(lagged[1:] @ lagged[:-1] / (lagged[:-1] @ lagged[:-1]), 0.05, SLOWEST))
     powers = phi ** np.arange(1, LAGS + 1)
     fading = float(np.clip(powers @ lagged / (powers @ powers), 0.0, variance))
-    return ChannelNoise(phi=phi, fading=fading, white=max(variance - fading, 1e-3 * variance))
+    rough = abs(uneven - (3.0 - phi) + LESS / math.sqrt(n)) < AS_ROUGH + BY_CHANCE / math.sqrt(n)
+    return ChannelNoise(phi=phi, fading=fading, white=max(variance - fading, 1e-3 * variance), rough=rough)
 
 
 def by_channel(trials: Sequence[Trial], level: Callable[[FloatArray], float]) -> FloatArray:

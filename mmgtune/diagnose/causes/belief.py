@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from ...phrases import listed
 from ..bench import winds
+from ..bench.hypotheses import n_terms
 from ..evidence.leftover import NOTICED, Leftover
 from ..held_out.gain import MOST, Gain
 from ..held_out.together import Together
@@ -122,7 +123,7 @@ class Belief:
         not_told = f"how large {listed(unsized)} would be is not told, if anything at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
-        if len(brought) < 2:
+        if n_terms([tag for tag, _ in self.contributions]) < 2:
             if self.differs_by_run and self._faint and self.gain.surely_removed < AT_ALL:
                 return NEXT_TO_NOTHING
             if self.gain.share_removed >= TOLD:
@@ -130,8 +131,8 @@ class Belief:
             if self.leftover.structured and self.rest > LEFT_ALONE:
                 return "it removes little of the error where nothing was fitted, and leaves more than noise"
             return not_told
-        terms = [one for one in brought if not one.apart]
-        if self.more or len(terms) >= TOO_MANY:
+        terms = n_terms([tag for tag, one in self.contributions if not one.apart])
+        if self.more or terms >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
         if ended := list(dict.fromkeys(one.tag for one in self.causes if one.at_ends)):
             return f"the size of {listed(ended)} is at the end of its range"
@@ -139,10 +140,10 @@ class Belief:
             return "all that they remove is little beside noise, and other sums would"
         if self.rest > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
-        if len(terms) > 2 and self.groups and (self.differs_by_run or _least_may_be_form(self.causes, brought)):
+        if terms > 2 and self.groups and (self.differs_by_run or _least_may_be_form(self.causes, brought)):
             return "not all of them can be told from others"
         several = sum(bool(cause.runs) for cause in self.causes) > 1
-        if several and (len(terms) > 2 or not self.explains_all):
+        if several and (terms > 2 or not self.explains_all):
             return "more than one of them differs from run to run"
         if self.gain.share_removed < TOLD:
             return "it removes little of the error where nothing was fitted"
@@ -166,7 +167,7 @@ class Belief:
     @property
     def is_beyond_all(self) -> bool:
         """Whether several terms are needed and not believed: more trials of an unknown effect take more of them."""
-        return (self.more or len(self.contributions) >= TOO_MANY - 1) and bool(self.unclear)
+        return (self.more or n_terms([tag for tag, _ in self.contributions]) >= TOO_MANY - 1) and bool(self.unclear)
 
     @property
     def _told_by_none(self) -> bool:

@@ -91,7 +91,7 @@ class Leftover(Brief):
     """What is left at a point.
 
     excess     variance of all residuals beyond the white noise of the sensors and what the logged inputs leave open, as
-               a share of that noise
+               a share of that noise; of a channel whose noise has no white part, beyond and of all its noise
     channels   ``excess`` by channel
     alike      correlation of what heading and yaw rate say, and of what position and velocity say, over the window
                where it is clearest
@@ -102,8 +102,9 @@ class Leftover(Brief):
                estimated lasts so long that it hides that
     left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
     slows      by channel, variance that the noise as estimated has in a part that fades slowly, as a share of the white
-               one: part of ``channels``, and noise of the sensors where what is left has no structure
-    at_most    upper limit of ``slows``, as it may have been estimated too small
+               one: part of ``channels``, and noise of the sensors where what is left has no structure; 0 of a channel
+               whose noise has no white part
+    at_most    upper limit of what noise that fades adds to ``channels``, as it may have been estimated too small
     """
 
     excess: float
@@ -166,7 +167,8 @@ class Leftover(Brief):
 def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
     residuals = residuals_of(bench, point)
-    level = _level(bench, residuals)
+    rough = _rough(bench)
+    level = np.where(rough > 0.0, rough, _level(bench, residuals))
     left_open = _left_open(bench, point)
     excess, excused = {}, {}
     for k, name in enumerate(STATES):
@@ -197,6 +199,18 @@ def _level(bench: Workbench, residuals: Sequence[FloatArray]) -> FloatArray:
     # Second differences do not show the noise of rounding where a channel moves little.
     shown = np.maximum(_white(residuals), by_channel(bench.trials, rounding_noise))
     return np.where(shown > 0.0, np.maximum(shown, 1e-3 * least_noise(bench.trials)), shown)
+
+
+def _rough(bench: Workbench) -> FloatArray:
+    """(6,) deviation of the noise of channels where all of it fades; 0 of others.
+
+    As white noise such noise looks small: 2 % of its variance is in second differences where it fades in 30 samples.
+    """
+    found = np.zeros(len(STATES))
+    for name, noise in bench.noise.channels.items():
+        if noise.rough:
+            found[STATES.index(name)] = math.sqrt(noise.variance) * bench.sigma[STATES.index(name)]
+    return found
 
 
 def beside_swell(bench: Workbench, point: Point, period: float) -> float:
@@ -243,16 +257,15 @@ def change_in_words(name: str, ids: Sequence[str]) -> str:
 
 
 def _slow(bench: Workbench, name: str, level: float, excess: float) -> tuple[float, float]:
-    """Variance of the fading part of the noise of a channel over that of its white noise, as estimated and at most; no
-    more than it has."""
+    """See ``Leftover.slows`` and ``at_most``; no more than the channel has beyond its ``level``."""
     noise = bench.noise.channels.get(name)
     if noise is None or not noise.fading:
         return 0.0, 0.0
-    slow = noise.fading * (bench.sigma[STATES.index(name)] / level) ** 2
+    fading = noise.fading * (bench.sigma[STATES.index(name)] / level) ** 2
     independent = sum(trial.n_samples for trial in bench.trials) * (1.0 - noise.phi) / (1.0 + noise.phi)
-    errors = 0.0 if bench.noise.may_be_error else ERRORS * math.sqrt(2.0 / max(independent, 1.0))
-    at_most = (1.0 + SLACK + errors) * slow
-    found = np.clip([slow, at_most], 0.0, max(excess, 0.0))
+    errors = 0.0 if bench.noise.may_be_error and not noise.rough else ERRORS * math.sqrt(2.0 / max(independent, 1.0))
+    slow = 0.0 if noise.rough else fading
+    found = np.clip([slow, slow + (SLACK + errors) * fading], 0.0, max(excess, 0.0))
     return float(found[0]), float(found[1])
 
 

@@ -118,10 +118,12 @@ def rivals_among(refits: Sequence[Refit]) -> list[Refit]:
     return list(found.values())
 
 
-def kin_among(refits: Sequence[Refit]) -> list[Refit]:
-    """Refits of effects that act much like the best and explain a good part of what it does: where that leaves far more
-    than noise it has another form than the true cause, and form is all that tells such effects apart."""
-    best = refits[0]
-    akin = [refit for refit in refits[1:] if refit.hypothesis.tag in best.hypothesis.effect.akin]
-    nearest = max(akin, key=lambda refit: refit.gain, default=best)
-    return [nearest] if nearest is not best and nearest.gain >= AKIN * best.gain else []
+def kin_among(refits: Sequence[Refit], tag: str, share: float = AKIN) -> list[Refit]:
+    """Refits of effects that act much like that of a tag and explain a share of what the best of it does: where that
+    leaves more than noise it has another form than the true cause, and form is all that tells such effects apart."""
+    own = next((refit for refit in refits if refit.hypothesis.tag == tag), None)
+    if own is None:
+        return []
+    akin = [refit for refit in refits if refit.hypothesis.tag in own.hypothesis.effect.akin]
+    nearest = max(akin, key=lambda refit: refit.gain, default=own)
+    return [nearest] if nearest is not own and nearest.gain >= share * own.gain else []

@@ -19,7 +19,7 @@ from ...fitting.lost import require_simulated
 from ...hooks import Phase
 from ...trial import Held
 from ..bench import noise as noises
-from ..bench.hypotheses import Hypothesis
+from ..bench.hypotheses import Hypothesis, n_terms
 from ..bench.workbench import Point, Workbench
 from ..signatures.beside import free_with, kept_free
 from ..signatures.linear import Linear, linearise
@@ -126,7 +126,8 @@ def search(
     dropped: list[Hypothesis] = []
     once: list[Hypothesis] = []
     while not bench.stop():
-        found.more = len(found.causes) == TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
+        n = n_terms([cause.tag for cause in found.causes])
+        found.more = n >= TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
         if found.more:
             break
         number = len(found.causes) + 1
@@ -175,7 +176,7 @@ def search(
         _drop_superfluous(bench, found, found.causes[:-1])
     if not bench.stop():
         _make_plain(bench, found, hypotheses)
-    found.more = found.more and len(found.causes) == TOO_MANY - 1
+    found.more = found.more and n_terms([cause.tag for cause in found.causes]) >= TOO_MANY - 1
     return found
 
 

@@ -21,6 +21,9 @@ REFITTED, TERMS_REFITTED = 11, 4
 ANYHOW = 4
 """Hypotheses of the best scores that are refitted whatever first steps promise."""
 
+SURE = 2
+"""Hypotheses that are refitted anyhow, however little they explain: those whose scores chance brings least of."""
+
 LIKELY = 9
 """Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
 
@@ -59,6 +62,8 @@ class Shortlist:
             strong = self.refitter.strong
             chosen = self._likely(named) if strong or self.refitter.given else named[:REFITTED]
             chosen += [] if strong else self._well_formed(named, chosen)
+            sure = sorted(named, key=lambda score: -score.evidence)[:SURE]
+            chosen += [score for score in sure if score not in chosen]
             chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]
             if not strong:
                 chosen = [s for s in chosen if s in top or self._may_tell(s)]

@@ -13,7 +13,7 @@ from ...units import NORMAL_95
 from ..bench.workbench import Point, Workbench
 from .linear import linearise, unit_of
 
-AT_END = 0.01
+AT_END = 0.1
 """Share of an interval on one side of its value from which that is at an end of its range."""
 
 OF_BOX = 1.0 / 12.0
@@ -24,7 +24,8 @@ OF_BOX = 1.0 / 12.0
 class Estimate:
     """A parameter of a cause: value and 95 % interval in its unit; an end is None where it is infinite.
 
-    apart  of a value of single runs, the standard error of how far it is from the mean of all; else None
+    apart   of a value of single runs, the standard error of how far it is from the mean of all; else None
+    at_end  whether the value is at an end of its range, which its interval ends with
     """
 
     name: str
@@ -33,13 +34,7 @@ class Estimate:
     high: float | None
     stderr: float | None
     apart: float | None = None
-
-    @property
-    def at_end(self) -> bool:
-        """Whether the value is at an end of its range, which its interval ends with."""
-        if self.low is None or self.high is None or not self.low < self.high:
-            return False
-        return min(self.value - self.low, self.high - self.value) < AT_END * (self.high - self.low)
+    at_end: bool = False
 
 
 def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
@@ -123,7 +118,9 @@ def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: 
         ends[i] = np.clip([unit[i] - NORMAL_95 * deviation[i], unit[i] + NORMAL_95 * deviation[i]], 0.0, 1.0)
         low, high = sorted(float(end) for end in box.from_unit(ends)[i])
         stderr = 0.5 * (high - low) / NORMAL_95 if np.isfinite(high) else None
-        found[name] = Estimate(name, float(values[i]), low, high if np.isfinite(high) else None, stderr)
+        width = float(np.ptp(ends[i]))
+        at_end = width > 0.0 and float(np.min(np.abs(ends[i] - unit[i]))) < AT_END * width
+        found[name] = Estimate(name, float(values[i]), low, high if np.isfinite(high) else None, stderr, at_end=at_end)
     for name, spread_of_one in _apart(names, covariance).items():
         i = names.index(name)
         if i not in box.charted:
