@@ -34,6 +34,10 @@ class Display(Protocol):
         """The result as text in columns; its ``repr`` is the text itself."""
         ...
 
+    def sentence(self, of: object) -> str:
+        """What came of it."""
+        ...
+
     def plots(self, of: object) -> Sequence[str]:
         """Which pictures there are of it: "tracks", "histories", "coefficients"."""
         ...
@@ -105,6 +109,10 @@ class Displayed:
     def summary(self) -> str:
         """The result as a text of at most 80 columns."""
         return _display().summary(self)
+
+    def sentence(self) -> str:
+        """What came of it, as the headline of its report says; the line it prints as where there is nothing to say."""
+        return _display().sentence(self)
 
 
 class Plotted(Displayed):

@@ -7,15 +7,17 @@ from functools import cached_property
 from typing import Any
 
 from .arguments import ShipGiven, TrialsGiven, ship_of, trials_of
+from .displayed import Displayed, inert
 from .errors import OptionError, Problem
 from .motions import trial_indices
+from .phrases import counted
 from .resources import profile_names
 from .trial import TrialSet, another_ship
 from .trial.describe import describe
 
 
 @dataclass(frozen=True, eq=False)
-class Inspected:
+class Inspected(Displayed):
     """Trials, and the length of their ship that indices are counted in.
 
     L_pp   [m]
@@ -28,7 +30,9 @@ class Inspected:
 
     def __repr__(self) -> str:
         """In a line."""
-        return f"Inspected({', '.join([*self.trials.trials, *self.trials.stated])})"
+        ids = [*self.trials.trials, *self.trials.stated]
+        more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
+        return inert(f"Inspected({counted(len(ids), 'trial')}: {', '.join(ids[:4])}{more})")
 
     @cached_property
     def rows(self) -> tuple[dict[str, Any], ...]:

@@ -109,7 +109,7 @@ def summary(result: LearnedMixture, document: Mapping[str, Any], *, report: bool
             share = f"{row['share']:g}" + (f", networks {row['network']}" if "network" in row else "")
             lines.append(f"{share:<{wide}}{total:>10}" + "".join(f"{one:>12}" for one in errors) + chosen)
         lines += ["error: mean over kinds of manoeuvre of L_MSE over that of the model of forces; * kept", ""]
-    lines += [text for note in result.notes for text in (note, "")]
+    lines += [text for note in (*result.warnings, *result.notes) for text in (note, "")]
     lines.append(repr(result.model))
     if report:
         lines.append(f"Report: {document['out']}/report.html")

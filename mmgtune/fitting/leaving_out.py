@@ -14,7 +14,7 @@ from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..arrays import FloatArray
 from ..bands import Pooled
 from ..circumstances import notes_on
-from ..displayed import Displayed
+from ..displayed import Plotted
 from ..documents import finite, finite_values
 from ..errors import OptionError, Problem, must_be_a
 from ..evaluation import TrialRecord, evaluate
@@ -103,7 +103,7 @@ class BandsLeftOut:
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOut(Displayed):
+class LeftOut(Plotted):
     """Every tune trial scored by coefficients that were fitted without its run.
 
     thetas   values by name in profile units, fitted without each part of the runs

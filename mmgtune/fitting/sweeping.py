@@ -124,6 +124,10 @@ class SweepResult(Plotted):
             f"(root mean square); {J}."
         )
 
+    def sentence(self) -> str:
+        """Which width is recommended and what it is worth, and whether wider boxes over-fit."""
+        return f"{self.recommended()['sentence']} {self.overfitting()['sentence']}"
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a reader must know first: of the best fit, or of the last where the sweep was stopped."""

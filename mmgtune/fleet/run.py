@@ -15,6 +15,7 @@ from ..errors import OptionError, OutputError, Problem
 from ..files import alone_in, exists, make_folder, path_of, remove_left_overs, write_text
 from ..options import FleetOptions
 from ..options.choice import must_be
+from ..phrases import counted
 from ..provenance import made_by
 from ..resources import must_be_name
 from ..run_files import FLEET, JOBS
@@ -69,14 +70,22 @@ class FleetRun(Displayed):
         several = [f"{n} {noun}{'s' * (n != 1)}" for n, noun in words]
         return f"FleetRun({several[0]}, {several[1]}: {several[2]}, {of['failed']} failed)"
 
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``fleet.json``."""
+        return dict(self.document)
 
-@dataclass(frozen=True)
-class FleetPlan:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FleetPlan(Displayed):
     """What a run would do: its jobs, those that are there already, and about how long the rest takes on one worker."""
 
     jobs: tuple[Job, ...]
     there: frozenset[str]
     reckoned: Reckoned
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"FleetPlan({counted(len(self.jobs), 'job')}, {sum(job.key in self.there for job in self.jobs)} done)"
 
 
 def plan_fleet(table: FleetTable | Path | str, out: Path | str | None = None) -> FleetPlan:

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..displayed import Displayed
 from ..errors import OptionError, Problem, among, must_be_a
 from ..files import all_or_none, path_of, refuse_existing, write_text
 from ..model import Model
 from ..motions import Motion, generated_trial
 from ..options import MakeOptions
 from ..options.choice import must_be
-from ..phrases import capital
+from ..phrases import capital, counted
 from ..profile import ShipProfile, froude_scaled, load_profile
 from ..trial import Trial, write_trial
 from ..units import DEG
@@ -46,8 +47,8 @@ tune = [{ids}]
 """
 
 
-@dataclass(frozen=True)
-class Made:
+@dataclass(frozen=True, repr=False)
+class Made(Displayed):
     """What was written.
 
     sets     for each its name, what it is, folder, number of trials, time [s] and samples
@@ -57,6 +58,11 @@ class Made:
     ship: str
     sets: tuple[dict[str, Any], ...]
     profile: Path | None
+
+    def __repr__(self) -> str:
+        """In a line."""
+        trials = counted(sum(one["trials"] for one in self.sets), "trial")
+        return f"Made({self.ship}, {counted(len(self.sets), 'set')} of {trials})"
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

@@ -20,6 +20,7 @@ import numpy as np
 from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends.compiled import cores
 from ..backends.twins import accelerated, jax_module
+from ..displayed import Plotted
 from ..documents import finite
 from ..errors import OptionError, Problem, must_be_a
 from ..files import kept_in
@@ -29,6 +30,7 @@ from ..networks.feedforward import Layers, Standards
 from ..options.choice import must_be
 from ..options.learning import EnsembleOptions
 from ..scores import TrialScore
+from . import records
 from .choosing import Single
 from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member
 from .keeping import Kept
@@ -75,7 +77,7 @@ class EnsembleMember:
 
 
 @dataclass(frozen=True, eq=False)
-class LearnedEnsemble:
+class LearnedEnsemble(Plotted):
     """Networks that differ by their initial values and the order of windows alone.
 
     task    what was learned from what
@@ -111,6 +113,10 @@ class LearnedEnsemble:
         """In a line."""
         losses = ", ".join(f"{one.score:.3g}" for one in self.members)
         return f"LearnedEnsemble({self.ensemble.ship}: {len(self.members)} members, loss {losses})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``ensemble.json``: everything but the weights."""
+        return records.of_ensemble(self)
 
 
 def learn_ensemble(

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends import STATES
+from ..displayed import Plotted
 from ..errors import OptionError, Problem, must_be_a
 from ..files import kept_in
 from ..hooks import Hooks
@@ -26,6 +27,7 @@ from ..predictor import as_predictor
 from ..profile import ShipProfile
 from ..scores import TrialScore, score
 from ..trial import Trial
+from . import records
 from .choosing import pieces_of
 from .gains import Gain, Trained, curve_of, gains_of
 from .hybrid import HybridAim, ResidualLoss, first_residual, ranges_of
@@ -48,7 +50,7 @@ DECAY = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class LearnedHybrid:
+class LearnedHybrid(Plotted):
     """A hybrid, and how it was chosen.
 
     hybrid   what does best on runs that were not learned from; the model of forces alone where nothing does better, and
@@ -94,6 +96,10 @@ class LearnedHybrid:
         """In a line."""
         said = ", ".join(f"{one.manoeuvre} {100 * one.share:.0f} %" for one in self.gains) if self.gained else "no gain"
         return f"LearnedHybrid({self.hybrid.profile.id}: {said})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``hybrid.json``: everything but the weights."""
+        return records.of_hybrid(self)
 
 
 def learn_hybrid(

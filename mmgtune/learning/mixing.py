@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from .. import limits
 from ..arguments import TrialsGiven, trials_of
 from ..comparing_models import ModelComparison, compare_models
+from ..displayed import Displayed
 from ..documents import finite
 from ..errors import OptionError, Problem, brief, kind_of, must_be_a, reason
 from ..networks import (
@@ -27,6 +28,7 @@ from ..objective import spread, varying
 from ..options import CompareModelsOptions
 from ..options.choice import must_be
 from ..options.learning import MixtureOptions
+from ..phrases import counted, in_percent
 from ..predictor import Predictor
 from ..profile import ShipProfile
 from ..profile.changing import joined
@@ -36,6 +38,8 @@ from ..trial import Trial, TrialSet
 from ..validating import Scorable
 from .choosing import pieces_of
 from .task import warned
+
+NO_GAIN = "No gain"
 
 NetworkGiven = Network | Predictor | str | Path
 
@@ -62,7 +66,7 @@ class Tried:
 
 
 @dataclass(frozen=True, eq=False)
-class LearnedMixture:
+class LearnedMixture(Displayed):
     """The best of the shares that were tried; a hybrid or networks alone where no mixture does better.
 
     tried    share by share, with 0, the hybrid alone, and 1, each of the networks alone; empty where nothing chose
@@ -101,7 +105,7 @@ class LearnedMixture:
             kept = "networks alone are" if self.share else "model of forces alone is"
             if self.network is not None:
                 kept = f"networks {self.network} alone are"
-            said.append(f"No gain: no mixture does better than one of its parts, and the {kept} kept.")
+            said.append(f"{NO_GAIN}: no mixture does better than one of its parts, and the {kept} kept.")
         return tuple(said)
 
     def as_ship(self) -> Mixture | Hybrid | Network:
@@ -112,6 +116,20 @@ class LearnedMixture:
         """In a line."""
         return f"LearnedMixture({self.model!r})"
 
+    def sentence(self) -> str:
+        """What was put together, and what that is worth on the runs that chose."""
+        if not self.tried:
+            return f"A share of {self.share:g} for the networks, as given: no trials chose it."
+        kept = next(one for one in self.tried if (one.share, one.network) == (self.share, self.network))
+        if self.share in (0.0, 1.0):
+            return next(note for note in self.notes if note.startswith(NO_GAIN))
+        if not math.isfinite(kept.score):
+            return f"Every share diverges on a trial that chose; that of {self.share:g} is kept."
+        return (
+            f"With a share of {self.share:g} for the networks the error L_MSE is {in_percent(kept.score)} of that of "
+            f"the model of forces alone, mean over {counted(len(kept.errors), 'kind')} of manoeuvre."
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {
@@ -121,6 +139,7 @@ class LearnedMixture:
             "tried": [one.to_dict() for one in self.tried],
             "seen": list(self.seen),
             "options": self.options.to_dict(),
+            "warnings": list(self.warnings),
             "provenance": self.provenance,
         }
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends.twins import accelerated
+from ..displayed import Plotted
 from ..documents import finite
 from ..errors import OptionError, Problem, must_be_a
 from ..files import kept_in
@@ -24,6 +25,7 @@ from ..options.learning import LearnOptions
 from ..predictor import Predictor
 from ..scores import TrialScore, score
 from ..trial import Trial
+from . import records
 from .aims import RecurrentAim
 from .choosing import pieces_of
 from .keeping import Kept
@@ -70,7 +72,7 @@ class Member:
 
 
 @dataclass(frozen=True, eq=False)
-class Learned:
+class Learned(Plotted):
     """Networks of one type, one for each seed.
 
     task     what was learned from what
@@ -108,6 +110,10 @@ class Learned:
         best = ", ".join(f"{one.best['score' if chosen else 'loss']:.3g}" for one in self.members)
         what = "L_MSE of validation" if chosen else "loss"
         return f"Learned({self.network.ship}, type {self.task.options.type}, {what} by seed {best})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``learning.json``: everything but the weights."""
+        return records.of_networks(self)
 
 
 def learn_rnn(

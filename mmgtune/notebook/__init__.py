@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..displayed import inert
 from ..errors import OptionError, Problem
 from .kinds import view_of
 
@@ -34,6 +35,12 @@ def summary(of: object) -> str:
     from . import text
 
     return text.summary(view_of(of))
+
+
+def sentence(of: object) -> str:
+    """See ``displayed.Display``."""
+    view = view_of(of)
+    return inert(" ".join(view.says) or view.title).replace("\u00a0", " ")
 
 
 def plots(of: object) -> Sequence[str]:

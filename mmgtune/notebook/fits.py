@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..documents import finite
+from ..profile.doubts import in_words
+from ..report.pages import leave_out_page
 from ..units import DIMENSIONLESS, NORMAL_95
 from .ships import measured, simulated
 from .view import Line, Room, Row, View
@@ -106,9 +108,8 @@ def sweep(result: SweepResult) -> View:
         }
         for a_r, run, judged in zip(result.widths, result.runs, result.judged(), strict=True)
     ]
-    says = [result.recommended()["sentence"], result.overfitting()["sentence"]]
     return View(
-        repr(result), says, rows, result.warnings,
+        repr(result), [result.sentence()], rows, result.warnings,
         spare=tuple(reversed(list(result.runs[0].theta))),
         rooms=lambda: {f"a_r {a_r:g}": rooms(run) for a_r, run in zip(result.widths, result.runs, strict=True)},
         motions=lambda: compared(result.runs[result.best].compared),
@@ -129,7 +130,10 @@ def left_out(result: LeftOut) -> View:
         }
         for row in result.rows()
     ]
-    return View(repr(result), [], rows, result.warnings)
+    notes = [*result.warnings, *(f"{words}." for words in in_words(result.doubts))]
+    return View(
+        repr(result), [leave_out_page.verdict(result.to_dict())], rows, notes, motions=lambda: compared(result.compared)
+    )
 
 
 def posterior(result: Posterior) -> View:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from .view import Row, View
 
 if TYPE_CHECKING:
-    from ..fleet import FleetRun
+    from ..fleet import FleetPlan, FleetRun
 
 
 def run(result: FleetRun) -> View:
@@ -34,6 +34,23 @@ def run(result: FleetRun) -> View:
     return View(
         repr(result), changed or ["Nothing changed."], rows, failed, spare=("off heading [deg]", "causes", "job")
     )
+
+
+def plan(result: FleetPlan) -> View:
+    """A row a job, and whether it is done already."""
+    rows: list[Row] = [
+        {
+            "ship": job.ship,
+            "date": job.date,
+            "job": job.name,
+            "command": job.command,
+            "trials": job.trials.path,
+            "done": "yes" if job.key in result.there else "",
+        }
+        for job in result.jobs
+    ]
+    low, high = result.reckoned.seconds
+    return View(repr(result), [f"What is left takes about {low:.2g} to {high:.2g} s on one worker."], rows)
 
 
 def _within(sentence: str) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..physics.quantities import STATES
 from ..profile.doubts import in_words
+from ..report.pages import comparison_page, models_page, validate_page
 from .fits import compared
 from .ships import measured, simulated
 from .view import Line, Row, View
@@ -59,15 +61,16 @@ def validation(result: Validation) -> View:
                  "L_MSE": one.L_MSE}
             )  # fmt: skip
     notes = [f"{model.name}: {note}." for model in result.profiles for note in model.notes]
-    return View(repr(result), [], rows, notes, spare=("manoeuvre",), motions=lambda: _validated(result))
+    says = [validate_page.verdict(validate_page.ValidationRecord(Path(), result.to_dict(), {}, ()))]
+    return View(repr(result), says, rows, notes, spare=("manoeuvre",), motions=lambda: _validated(result))
 
 
 def _validated(result: Validation) -> Mapping[str, list[Line]]:
     """Trials, or windows of them, as measured and as each model has them."""
-    return _alongside(result.pieces, {one.name: (one.predictor, one.offsets) for one in result.profiles})
+    return alongside(result.pieces, {one.name: (one.predictor, one.offsets) for one in result.profiles})
 
 
-def _alongside(
+def alongside(
     trials: Sequence[Trial], models: Mapping[str, tuple[Predictor, FloatArray | None]]
 ) -> Mapping[str, list[Line]]:
     """Trials as measured, and beside each what the first member of each model makes of it.
@@ -96,13 +99,14 @@ def models(result: ModelComparison) -> View:
                      "deviation": cell.deviation, "diverged": cell.diverged}
                 )  # fmt: skip
     notes = [f"{note}." for note in result.notes]
-    return View(repr(result), [], rows, notes, spare=("diverged", "deviation"), motions=lambda: _compared(result))
+    says = [models_page.verdict(models_page.ModelsRecord(Path(), result.to_dict(), {}, ()))]
+    return View(repr(result), says, rows, notes, spare=("diverged", "deviation"), motions=lambda: _compared(result))
 
 
 def _compared(result: ModelComparison) -> Mapping[str, list[Line]]:
     """Whole trials as measured and as the first member of each model has them."""
     trials = list(result.data.trials.values())
-    return _alongside(trials, {one.name: (one.predictor, None) for one in result.models})
+    return alongside(trials, {one.name: (one.predictor, None) for one in result.models})
 
 
 def profiles(result: Comparison) -> View:
@@ -112,7 +116,7 @@ def profiles(result: Comparison) -> View:
         for row in result.data["coefficients"]
         if row["a"] != row["b"]
     ]
-    return View(repr(result), [], rows)
+    return View(repr(result), [comparison_page.verdict(comparison_page.ComparisonRecord(Path(), result.data))], rows)
 
 
 def check(result: CheckReport) -> View:

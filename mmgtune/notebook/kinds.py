@@ -15,10 +15,26 @@ def _prediction(result: Any) -> View:
     return predictions.prediction(result)
 
 
+def _fit_bands(result: Any) -> View:
+    from . import predictions
+
+    return predictions.fit_bands(result)
+
+
 def _plan(result: Any) -> View:
     from . import predictions
 
     return predictions.plan(result)
+
+
+def _learned(name: str) -> Callable[[Any], View]:
+    def view(result: Any) -> View:
+        from . import learned  # imports what trains
+
+        shown: View = getattr(learned, name)(result)
+        return shown
+
+    return view
 
 
 def _headings(result: Any) -> View:
@@ -46,6 +62,14 @@ KINDS: Mapping[str, Callable[[Any], View]] = {
     "CheckReport": judgements.check,
     "VoyageValidation": judgements.voyages,
     "FleetRun": fleets.run,
+    "FleetPlan": fleets.plan,
+    "Inspected": ships.inspected,
+    "Made": ships.made,
+    "FitBands": _fit_bands,
+    "Learned": _learned("networks"),
+    "LearnedEnsemble": _learned("ensemble"),
+    "LearnedHybrid": _learned("hybrid"),
+    "LearnedMixture": _learned("mixture"),
     "Predicted": _prediction,
     "TrialPlan": _plan,
     "HeadingStudy": _headings,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,13 +11,15 @@ import numpy as np
 from ..manoeuvres.named import BY_KEY
 from ..physics.quantities import STATES
 from ..predicting.result import END
+from ..report.pages import heading_page, plan_page, predict_page
+from . import fits
 from .ships import measured
 from .view import Line, Row, View
 
 if TYPE_CHECKING:
     from ..heading_keeping import HeadingStudy
     from ..planning import TrialPlan
-    from ..predicting import Foretold, Predicted
+    from ..predicting import FitBands, Foretold, Predicted
 
 PARTICLES = 40
 """Particles of a prediction that are drawn."""
@@ -37,7 +40,8 @@ def prediction(result: Predicted) -> View:
                 last = factor * run.trial.motion[-1, STATES.index(name)] if run.trial else np.nan
                 known_last = float(last) if np.isfinite(last) else None
                 rows.append(_banded(result, run, f"{words} at the end", unit, end, known_last))
-    says = [f"Between low and high lie {result.options.level:g} % of the particles."] if result.has_band else []
+    says = [predict_page.verdict(predict_page.PredictRecord(Path(), result.to_dict(), {}, {}))]
+    says += [f"Between low and high lie {result.options.level:g} % of the particles."] if result.has_band else []
     return View(repr(result), says, rows, result.notes, spare=("reached",), motions=lambda: _foretold(result))
 
 
@@ -69,6 +73,13 @@ def _foretold(result: Predicted) -> Mapping[str, list[Line]]:
     return found
 
 
+def fit_bands(result: FitBands) -> View:
+    """The manoeuvres that come of a fit, as of a prediction; without any what its trials leave open."""
+    of = fits.posterior(result.posterior) if result.predicted is None else prediction(result.predicted)
+    says = [result.fit.sentence(), *result.posterior.sentences()]
+    return View(repr(result), says, of.rows, result.warnings, spare=of.spare)
+
+
 def headings(result: HeadingStudy) -> View:
     """A row a pair of gains: scores of the true system, and of each simulator the mean of its members."""
     rows: list[Row] = []
@@ -81,7 +92,7 @@ def headings(result: HeadingStudy) -> View:
             }
             row |= {f"{one.name} [rad s]": float(np.mean(one.scores[:, i, j])) for one in result.models}
             rows.append(row)
-    return View(repr(result), [], rows)
+    return View(repr(result), [heading_page.verdict(heading_page.HeadingRecord(Path(), result.to_dict()))], rows)
 
 
 def plan(result: TrialPlan) -> View:
@@ -90,4 +101,5 @@ def plan(result: TrialPlan) -> View:
         {"trial": one.words, "duration [s]": one.duration, "half width after": one.half, "share that goes": one.shrinks}
         for one in result.trials
     ]
-    return View(repr(result), [], rows, result.notes)
+    says = [plan_page.verdict(result.to_dict())] if result.trials else []
+    return View(repr(result), says, rows, result.notes)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..inputs import INPUTS
-from ..phrases import counted
+from ..phrases import capital, counted
 from ..physics.quantities import STATES
 from ..report.wording import PRINCIPAL, index_words
 from ..trial.schema import FILE_CHANNELS, REQUIRED
@@ -16,6 +16,8 @@ from .view import Line, Row, View
 
 if TYPE_CHECKING:
     from ..evaluation import TrialRecord
+    from ..generating import Made
+    from ..inspecting import Inspected
     from ..motions import Motion
     from ..profile import ShipProfile
     from ..simulating import Simulated
@@ -89,6 +91,50 @@ def trials(data: TrialSet) -> View:
         repr(data), [], rows, terms, spare=("approach speed [m/s]", "manoeuvre", "source"),
         motions=lambda: {name: [measured(one)] for name, one in data.trials.items()},
     )  # fmt: skip
+
+
+def inspected(result: Inspected) -> View:
+    """A row a trial: what it is, and the indices that are read from it, or stated of it."""
+    rows: list[Row] = []
+    for row in (*result.rows, *result.stated):
+        indices = row.get("indices") or {}
+        numbers = {_index(key): value for key, value in indices.items() if key in PRINCIPAL}
+        numbers |= {f"{index_words(key)[0]}, stated [{of['unit']}]": of["value"] for key, of in _with_units(indices)}
+        rows.append(
+            {
+                "trial": row["id"],
+                "role": row["role"],
+                "manoeuvre": row["manoeuvre"],
+                "duration [s]": row.get("duration_s"),
+                "approach speed [m/s]": indices.get("approach_speed_m_per_s"),
+                **numbers,
+            }
+        )
+    less = [_index(key) for key in reversed(PRINCIPAL) if key not in FIRST]
+    notes = [f"{capital(words)}." for words in result.notes]
+    return View(repr(result), [], alike(rows), notes, spare=("approach speed [m/s]", *less, "duration [s]", "manoeuvre"))
+
+
+def _with_units(indices: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
+    """Indices that are stated; those that are read from a record are numbers alone."""
+    return [(key, of) for key, of in indices.items() if isinstance(of, Mapping)]
+
+
+def made(result: Made) -> View:
+    """A row a set: what it is, where it lies and how much is in it."""
+    rows: list[Row] = [
+        {
+            "set": one["set"],
+            "about": one["about"],
+            "trials": one["trials"],
+            "duration [s]": one["seconds"],
+            "samples": one["samples"],
+            "folder": one["folder"],
+        }
+        for one in result.sets
+    ]
+    ship = f"The profile of the ship is {result.profile}." if result.profile else ""
+    return View(repr(result), [ship] if ship else [], rows, spare=("folder",))
 
 
 def _about(one: Trial, role: str) -> Row:

@@ -98,6 +98,10 @@ class Posterior(Plotted):
             self.shown.sentence(),
         ]
 
+    def sentence(self) -> str:
+        """What the trials say of the ship, and how much they are believed."""
+        return " ".join(self.sentences())
+
     def to_dict(self) -> dict[str, Any]:
         """The document of ``posterior.json``."""
         profile, names = self.particles.profile, self.room.names

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..arguments import TrialsGiven
+from ..displayed import Displayed
 from ..errors import OptionError, must_be_a
 from ..fitting import FitResult, write_run
 from ..hooks import Hooks
@@ -37,7 +38,7 @@ def with_bands(result: Simulated) -> Simulated:
 
 
 @dataclass(frozen=True, eq=False)
-class FitBands:
+class FitBands(Displayed):
     """What trials leave open of a ship that was tuned to them, and what comes of that in the usual manoeuvres.
 
     fit        that tuned her
@@ -45,6 +46,8 @@ class FitBands:
     predicted  these manoeuvres by all particles; None where the ship cannot be ordered to sail them
     notes      on that prediction
     """
+
+    written_by = "write_fit_bands"
 
     fit: FitResult
     posterior: Posterior
@@ -60,11 +63,15 @@ class FitBands:
         """Whether the drawing of particles was stopped."""
         return self.posterior.interrupted
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a reader must know: of the particles, and of the prediction."""
+        return (*self.posterior.warnings, *self.notes)
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON: ``bands`` of ``fit.json``."""
-        found = self.posterior.to_dict()
         predicted = None if self.predicted is None else self.predicted.indices()
-        return {**found, "warnings": [*found["warnings"], *self.notes], "predicted": predicted}
+        return {**self.posterior.to_dict(), "warnings": list(self.warnings), "predicted": predicted}
 
 
 def fit_bands(result: FitResult, trials: TrialsGiven, *, hooks: Hooks = Hooks(), command: str = "") -> FitBands:

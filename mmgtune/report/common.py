@@ -68,6 +68,11 @@ def of_training(data: Mapping[str, Any], verdict: str) -> str:
     return f"{STOPPED} {verdict}" if data["interrupted"] else verdict
 
 
+def stopped_early(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """How a training that was stopped goes on."""
+    return ("The training was stopped early; --resume continues it.",) if data["interrupted"] else ()
+
+
 def doubts(record: Mapping[str, Any]) -> tuple[str, ...]:
     """Which numbers of a profile may be wrong, in sentences; records of older versions do not say."""
     return tuple(f"{clean(words)}." for words in in_words(record.get("doubts") or ()))

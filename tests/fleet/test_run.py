@@ -19,7 +19,7 @@ import pytest
 from mmgtune.checking import update_baseline
 from mmgtune.errors import OutputError
 from mmgtune.fitting import FitOptions, fit, write_run
-from mmgtune.fleet import read_results, read_table, run_fleet
+from mmgtune.fleet import plan_fleet, read_results, read_table, run_fleet
 from mmgtune.fleet.expanding import expand
 from mmgtune.fleet.job import Job
 from mmgtune.fleet.processes import pool_of
@@ -32,6 +32,15 @@ from .conftest import QUICK, make_logs
 
 OF_NOW = ("created", "command", "wall_s", "out")
 """Of a record, what no two runs have in common."""
+
+
+def test_a_plan_and_a_run_are_tables(tmp_path: Path) -> None:
+    make_logs(tmp_path, ("a1",), ("2025-01", "2025-02"))
+    (tmp_path / "fleet.toml").write_text(QUICK, encoding="utf-8")
+    plan = plan_fleet(tmp_path / "fleet.toml")
+    assert repr(plan) == "FleetPlan(2 jobs, 0 done)"
+    assert plan.to_frame()["date"].tolist() == ["2025-01", "2025-02"]
+    assert "on one worker" in plan.sentence()
 
 
 def test_a_job_is_the_single_run_to_the_last_bit(fleet: Path, tmp_path: Path) -> None:

@@ -335,3 +335,11 @@ def test_the_plan_says_what_would_be_done(data):
 def test_observations_of_a_start_lie_in_its_window():
     with pytest.raises(OptionError, match="50 observations of a window of 10 steps"):
         replace(SMALL, initial=50)
+
+
+def test_an_ensemble_is_a_table_and_pictures(trained):
+    frame = trained.to_frame()
+    assert len(frame) == sum(len({one.manoeuvre for one in of}) for of in trained.scores.values())
+    assert "its members are" in trained.sentence()
+    assert dir(trained.plot) == ["histories", "tracks"]
+    assert trained.to_dict()["members"][0]["seed"] == trained.members[0].seed

@@ -244,3 +244,13 @@ def test_what_one_kind_gains_another_does_not_pay():
     assert ratios(before, after, runs) == pytest.approx({"turning": 0.5, "zigzag": 1.2})
     assert relative(before, after, runs) == pytest.approx(0.85 + 0.2)
     assert relative(before, before, runs) == pytest.approx(1.0)
+
+
+def test_a_hybrid_is_a_table_and_pictures(trained):
+    frame = trained.to_frame().set_index("trials")
+    assert frame.loc["kept back", "share removed"] == trained.gains[0].share
+    before, after = (L_MSE(trained.scores[which]) for which in ("before", "after"))
+    assert frame.loc["held out", ["L_MSE without", "L_MSE with"]].tolist() == pytest.approx([before, after])
+    assert trained.sentence().startswith("On held-out runs the hybrid is ")
+    assert dir(trained.plot) == ["histories", "tracks"]
+    assert trained.to_dict()["warnings"] == []

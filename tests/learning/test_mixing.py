@@ -249,3 +249,18 @@ def test_what_is_no_recurrent_network_is_called_by_its_file(tmp_path):
         learn_mixture("suzaku", "esso_osaka")
     (problem,) = error.value.problems
     assert (problem.what, problem.why) == ("esso_osaka is no recurrent network", "it is a profile")
+
+
+def test_a_mixture_is_a_table_of_the_shares_tried(parts, made):
+    result = learn_mixture(*parts, made, FEW)
+    frame = result.to_frame()
+    assert frame["share"].tolist() == [0.0, 0.2, 0.4, 0.6, 1.0]
+    assert frame.loc[frame["kept"] == "yes", "share"].tolist() == [0.4]
+    assert frame["L_MSE turning"].tolist() == [one.errors["turning"] for one in result.tried]
+    assert result.sentence().startswith("With a share of 0.4 for the networks the error L_MSE is ")
+    given = learn_mixture(*parts, options=MixtureOptions(share=(0.3,)))
+    assert given.sentence() == "A share of 0.3 for the networks, as given: no trials chose it."
+    assert given.to_frame().empty
+    other = learn_mixture(*parts, replace(made, ship="sakura"), FEW)
+    assert other.to_dict()["warnings"] == list(other.warnings) != []
+    assert other.warnings[0] in summary(other, {**other.to_dict(), "out": ""}, report=False)

@@ -405,3 +405,25 @@ def test_a_time_that_jumps_is_no_reason_to_fill_the_machine():
         samples_of([trial, jumping], ("n", "delta"), 1.0)
     (problem,) = error.value.problems
     assert "cut the trial where its time jumps" in problem.fix
+
+
+def test_a_training_is_a_table_and_pictures(trained, tmp_path):
+    frame = trained.to_frame()
+    assert frame["trials"].tolist() == ["held out", "kept back"]
+    assert frame["L_MSE"].iloc[0] == pytest.approx(L_MSE(trained.scores["test"]))
+    document = write_learned(trained, tmp_path)
+    assert {**trained.to_dict(), "out": str(tmp_path)} == document
+    render(tmp_path)
+    assert trained.sentence() in (tmp_path / "report.md").read_text()
+    assert trained.sentence() in " ".join(trained.summary().split())
+    assert dir(trained.plot) == ["histories", "tracks"]
+    assert "<table" in trained._repr_html_()
+
+
+def test_trials_of_another_ship_are_told_in_the_record_and_its_report(tmp_path):
+    data = replace(load_trials("suzaku"), ship="sakura")
+    document = write_learned(learn_rnn("suzaku", data, SMALL), tmp_path)
+    (said,) = document["warnings"]
+    assert "sakura" in said
+    render(tmp_path)
+    assert said in (tmp_path / "report.md").read_text()

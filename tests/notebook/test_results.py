@@ -89,6 +89,9 @@ def results(fitted, trials):
         sailed.records[0],
         validate(["suzaku", fitted.tuned_profile()], trials),
         mmgtune.predict("suzaku", "suzaku"),
+        mmgtune.compare_profiles("suzaku", "suzaku_fam"),
+        mmgtune.compare_models({"a": "suzaku", "b": "suzaku_fam"}, [trials["turn_p35"]]),
+        mmgtune.inspect_trials(trials),
     ]
 
 
@@ -101,6 +104,8 @@ def test_every_result_is_a_line_a_table_and_a_text(fitted, trials):
         assert html.tags.isdisjoint({"script", "img", "iframe", "link", "a"})
         frame = one.to_frame()
         assert len(frame)
+        assert one.sentence()
+        assert "\n" not in one.sentence()
         lines = repr(one.summary()).splitlines()
         assert repr(one) in " ".join(lines)
         assert max(map(len, lines)) <= 80, type(one)
@@ -232,10 +237,50 @@ def test_a_trial_on_which_the_model_diverges_has_no_numbers_there(fitted):
     assert repr(ComparedTrials()) == "ComparedTrials(0 trials)"
 
 
-def test_left_out_trials_are_a_table_too():
+def test_left_out_trials_are_a_table_too(plt):
     options = mmgtune.LeaveOutOptions(a_r=0.5, starts=1, targets=("hull.R_0",))
-    left_out = mmgtune.leave_out("suzaku", "suzaku", options).compared
-    assert left_out.to_frame()["role"].tolist() == ["left-out"] * 4
+    left_out = mmgtune.leave_out("suzaku", "suzaku", options)
+    assert left_out.compared.to_frame()["role"].tolist() == ["left-out"] * 4
+    assert dir(left_out.plot) == ["histories", "tracks"]
+    assert len(left_out.plot.tracks()) == 4
+    whole = left_out.to_frame().set_index("manoeuvre").loc["all"]
+    assert f"{whole['off track left out [m]']:.3g} m off track" in left_out.sentence()
+
+
+def test_what_a_result_says_is_the_headline_of_its_report(trials, tmp_path):
+    of = [trials["turn_p35"], trials["turn_m35"]]
+    written = {
+        "validated": (mmgtune.validate(["suzaku", "suzaku_fam"], of), mmgtune.write_validation),
+        "models": (
+            mmgtune.compare_models({"one": "suzaku", "other": "suzaku_fam"}, of),
+            mmgtune.write_model_comparison,
+        ),
+        "profiles": (mmgtune.compare_profiles("suzaku", "suzaku_fam"), mmgtune.write_comparison),
+    }
+    for name, (result, write) in written.items():
+        write(result, tmp_path / name)
+        mmgtune.render(tmp_path / name)
+        headline = (tmp_path / name / "report.md").read_text().splitlines()[0]
+        assert headline.replace("\u00a0", " ").replace("\\", "") == f"# {result.sentence()}"
+
+
+def test_what_trials_hold_and_what_was_made_are_tables(trials, tmp_path):
+    found = mmgtune.inspect_trials(trials)
+    frame = found.to_frame().set_index("trial")
+    (row,) = (one for one in found.rows if one["id"] == "turn_p35")
+    assert frame.loc["turn_p35", "advance [m]"] == row["indices"]["advance_m"]
+    stated = {"d": IndexTrial("d", "suzaku", "turning", 0.6, None, None, {"advance": Stated(240.0, 12.0)})}
+    assert mmgtune.inspect_trials(replace(trials, stated=stated)).to_frame()["advance, stated [m]"].iloc[-1] == 240.0
+    made = mmgtune.make_trials("vectwin", tmp_path, mmgtune.MakeOptions(sets=("test-r",)))
+    assert made.to_frame()["trials"].tolist() == [10]
+    assert repr(made) == "Made(vectwin_3m, 1 set of 10 trials)"
+
+
+def test_a_fit_with_bands_is_a_table_of_what_is_foretold(fitted):
+    found = mmgtune.fit_bands(fitted, "suzaku")
+    assert {"manoeuvre", "index", "low", "high"} <= set(found.to_frame())
+    assert found.sentence().startswith(fitted.sentence())
+    assert list(found.warnings) == found.to_dict()["warnings"]
 
 
 @pytest.mark.parametrize(

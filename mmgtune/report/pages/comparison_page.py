@@ -82,7 +82,7 @@ def build(record: ComparisonRecord) -> Page:
     return Page(
         title=f"{names[0]} and {names[1]} side by side",
         eyebrow=" · ".join(dict.fromkeys(titles)),
-        verdict=_verdict(names, manoeuvres["indices"]),
+        verdict=verdict(record),
         warnings=tuple(f"{clean(one['name'])}: {words}" for one in data["profiles"] for words in doubts(one)),
         cards=_cards(names, manoeuvres["indices"]),
         sections=tuple(sections),
@@ -97,7 +97,9 @@ def _find(rows: Sequence[Mapping[str, Any]], manoeuvre: str, index: str) -> tupl
     return None
 
 
-def _verdict(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
+def verdict(record: ComparisonRecord) -> str:
+    """Which ship turns tighter, and by how much."""
+    names, rows = record.names, record.data["manoeuvres"]["indices"]
     found = _find(rows, "turn_p35", "tactical_diameter_over_L")
     if found is None:
         return "The profiles say no approach or steering gear, so that no manoeuvres are compared."

@@ -7,10 +7,10 @@ from typing import Any
 from ...how_far_off import rms_errors
 from ...options.learning import ROLES
 from ..blocks import Card, Page, Prose, Section, Table, cells
-from ..common import banner_of_sources, of_training, picture
+from ..common import banner_of_sources, of_training, picture, stopped_early
 from ..learned_motions import block
 from ..load import Kind
-from ..wording import clean, count, listing, number, shown
+from ..wording import clean, count, listing, number, sentence, shown
 from .learning_page import (
     MEANING,
     LearningRecord,
@@ -42,9 +42,9 @@ def build(record: LearningRecord) -> Page:
     return Page(
         title=f"Ensemble of {clean(data['ship'])}",
         eyebrow=f"{clean(data['ship'])} · ensemble of {networks} of {data['layers']} × {data['width']} units",
-        verdict=of_training(data, _verdict(record)),
+        verdict=verdict(record),
         banners=banner_of_sources(data["provenance"]["trials"].get("sources"), learned=True),
-        warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
+        warnings=(*stopped_early(data), *map(sentence, data.get("warnings", ()))),
         cards=_cards(record),
         sections=(
             Section("tracks", "What its members predict", (block(data, tracks_words(record)),)),
@@ -61,9 +61,11 @@ def build(record: LearningRecord) -> Page:
     )
 
 
-def _verdict(record: LearningRecord) -> str:
+def verdict(record: LearningRecord) -> str:
+    """How far off the members are, and on which trials; first of all that the training was stopped, where it was."""
     off = off_in_words(record, "its members are")
-    return f"{off} {ROLES[record.role]}; how far they disagree says where the data tell them little."
+    said = f"{off} {ROLES[record.role]}; how far they disagree says where the data tell them little."
+    return of_training(record.data, said)
 
 
 def _cards(record: LearningRecord) -> tuple[Card, ...]:

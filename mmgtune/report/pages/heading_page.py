@@ -64,7 +64,7 @@ def build(record: HeadingRecord) -> Page:
     return Page(
         title="Heading keeping",
         eyebrow=f"{n} × {n} gains · true system {clean(data['truth']['name'])}",
-        verdict=_verdict(record),
+        verdict=verdict(record),
         cards=_cards(data["models"]),
         sections=(
             Section(
@@ -77,7 +77,7 @@ def build(record: HeadingRecord) -> Page:
     )
 
 
-def _verdict(record: HeadingRecord) -> str:
+def verdict(record: HeadingRecord) -> str:
     """What the gains that each simulator takes for best are worth, its members read by the worst of them."""
     gains, truth = record.data["gains"], record.maps[0][1]
     said = []

@@ -12,11 +12,11 @@ from ...how_far_off import rms_errors
 from .. import learned_motions
 from ..advice import shortest
 from ..blocks import Block, Card, Commands, Page, Prose, Section, Table, cells
-from ..common import banner_of_sources, of_training, picture
+from ..common import banner_of_sources, of_training, picture, stopped_early
 from ..figures.plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look
 from ..load import Kind
 from ..tables import tone
-from ..wording import MINUS, NONE, clean, count, number, percent, share, shown
+from ..wording import MINUS, NONE, clean, count, number, percent, sentence, share, shown
 from .learning_page import made_section
 
 
@@ -49,15 +49,20 @@ def build(record: HybridRecord) -> Page:
     return Page(
         title=f"{clean(data['ship'])}: a network beside the model of forces",
         eyebrow=f"{clean(data['ship'])} · hybrid: a network beside the model of forces",
-        verdict=of_training(data, _verdict(data)) if data["gained"] else _verdict(data),
+        verdict=verdict(data),
         banners=banner_of_sources(data["provenance"]["trials"].get("sources"), learned=True),
-        warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
+        warnings=(*stopped_early(data), *map(sentence, data.get("warnings", ()))),
         cards=_cards(data),
         sections=tuple(one for one in sections if one is not None),
     )
 
 
-def _verdict(data: Mapping[str, Any]) -> str:
+def verdict(data: Mapping[str, Any]) -> str:
+    """What the network is worth on runs it has not seen; first of all that the training was stopped, where it was."""
+    return of_training(data, _answer(data)) if data["gained"] else _answer(data)
+
+
+def _answer(data: Mapping[str, Any]) -> str:
     if not data["gained"] and data["interrupted"]:
         return "Stopped before a network was chosen: the model is the profile as it is."
     if not data["gained"]:

@@ -14,11 +14,11 @@ from ...options.learning import ROLES
 from .. import learned_motions
 from ..advice import shortest
 from ..blocks import Card, Commands, Page, Prose, Section, Table, cells
-from ..common import banner_of_sources, made_rows, of_training, options_fold, picture, sources_rows
+from ..common import banner_of_sources, made_rows, of_training, options_fold, picture, sources_rows, stopped_early
 from ..figures.plot import Axis, Color, Dash, Dots, Figure, Line, Look, Mark, Panel
 from ..load import Kind
 from ..tables import pairs
-from ..wording import clean, count, listing, number, shown
+from ..wording import clean, count, listing, number, sentence, shown
 
 _PARTS = {
     "test": "that played no part",
@@ -70,12 +70,17 @@ def build(record: LearningRecord) -> Page:
     return Page(
         title=f"Networks of {clean(data['ship'])}: type {clean(data['type'])}",
         eyebrow=f"{clean(data['ship'])} · networks of type {clean(data['type'])}: {clean(data['recipe'])}",
-        verdict=of_training(data, f"{off_in_words(record, 'the networks are')} {_PARTS[record.role]}."),
+        verdict=verdict(record),
         banners=banner_of_sources(data["provenance"]["trials"].get("sources"), learned=True),
-        warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
+        warnings=(*stopped_early(data), *map(sentence, data.get("warnings", ()))),
         cards=_cards(record),
         sections=tuple(sections),
     )
+
+
+def verdict(record: LearningRecord) -> str:
+    """How far off the networks are, and on which trials; first of all that the training was stopped, where it was."""
+    return of_training(record.data, f"{off_in_words(record, 'the networks are')} {_PARTS[record.role]}.")
 
 
 def off_in_words(record: LearningRecord, of: str) -> str:

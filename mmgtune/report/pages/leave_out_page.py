@@ -62,7 +62,7 @@ def build(record: LeaveOutRecord) -> Page:
     return Page(
         title=f"{ship}: trials left out in turn",
         eyebrow=f"{ship} · {count(len(data['parts']), 'fit')}, each without some of the trials",
-        verdict=_verdict(data),
+        verdict=verdict(data),
         lead=(f"L_MSE: {measures.L_MSE}.", f"The misfit J: {measures.J}.") if _whole(data) else (),
         banners=generated_banner(data["trials"]),
         warnings=(*((stopped,) if data.get("interrupted") else ()), *warnings(data), *doubts(data)),
@@ -75,7 +75,7 @@ def _whole(data: Mapping[str, Any]) -> Mapping[str, Any] | None:
     return next((row for row in data["scores"] if row["manoeuvre"] == "all"), None)
 
 
-def _verdict(data: Mapping[str, Any]) -> str:
+def verdict(data: Mapping[str, Any]) -> str:
     """The answer; first of all that it is not the whole one, where the run was stopped."""
     if not data.get("interrupted"):
         return _answer(data)

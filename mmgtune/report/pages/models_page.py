@@ -94,7 +94,7 @@ def build(record: ModelsRecord) -> Page:
     return Page(
         title="Models compared",
         eyebrow=f"{clean(data['trials']['ship']) or 'ship not stated'} · models on {clean(data['trials']['name'])}",
-        verdict=_verdict(record),
+        verdict=verdict(record),
         banners=banner_of_sources(data["trials"]["sources"]),
         warnings=tuple(clean(text) for text in data.get("notes") or ()),
         cards=_cards(record),
@@ -102,7 +102,7 @@ def build(record: ModelsRecord) -> Page:
     )
 
 
-def _verdict(record: ModelsRecord) -> str:
+def verdict(record: ModelsRecord) -> str:
     """The best model begun anew, and begun once; of the same model its name once."""
     said, named = [], ""
     for key, words in record.conventions.items():

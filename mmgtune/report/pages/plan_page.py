@@ -47,17 +47,21 @@ class PlanRecord:
         return "" if unit == "-" else f" {unit}"
 
 
+def verdict(data: Mapping[str, Any]) -> str:
+    """Which trial to sail next, and what it would tell."""
+    asked, best = data["question"], data["trials"][0]
+    of, order = clean(asked["words"]), clean(asked["order"])
+    if not best["shrinks"] > 0.0:
+        return f"No trial looked at tells anything of the {of}, {order}."
+    narrower = percent(100.0 * best["shrinks"]).lstrip("+")
+    return f"To sail next: {clean(best['trial'])}. It would narrow the band of the {of} ({order}) by {narrower}."
+
+
 def build(record: PlanRecord) -> Page:
     """Everything the report of a plan says."""
     data, asked, best = record.data, record.data["question"], record.trials[0]
     level = shown(data["options"]["level"], 3)
     words = f"{clean(asked['words'])}, {clean(asked['order'])}"
-    verdict = (
-        f"To sail next: {clean(best['trial'])}. It would narrow the band of the {clean(asked['words'])} "
-        f"({clean(asked['order'])}) by {percent(100.0 * best['shrinks']).lstrip('+')}."
-        if best["shrinks"] > 0.0
-        else f"No trial looked at tells anything of the {words}."
-    )
     half = f"± {shown(asked['half_width'], 2)}{record.unit}"
     cards = (
         Card(words.capitalize(), f"{shown(asked['mean'], 3)} {half}", note=f"half the band of {level} %, as it is now"),
@@ -88,7 +92,7 @@ def build(record: PlanRecord) -> Page:
     return Page(
         title=f"{clean(data['ship'])}: the trial to sail next",
         eyebrow=f"{clean(data['ship'])} · {clean(asked['text'])}",
-        verdict=verdict,
+        verdict=verdict(data),
         warnings=tuple(sentence(note) for note in data["notes"]),
         cards=cards,
         sections=tuple(sections),

@@ -119,7 +119,7 @@ def build(record: PredictRecord) -> Page:
     return Page(
         title="Prediction",
         eyebrow=f"{clean(data['model']['id'])} · {members}",
-        verdict=_verdict(record),
+        verdict=verdict(record),
         lead=_lead(record),
         banners=banner_of_sources(sources),
         warnings=(*(f"{clean(note)}." for note in data["notes"]), *doubts(data)),
@@ -143,7 +143,8 @@ def _lead(record: PredictRecord) -> tuple[str, ...]:
     return tuple(filter(None, (approaches.sentence(record.runs, ordered), simulated, band)))
 
 
-def _verdict(record: PredictRecord) -> str:
+def verdict(record: PredictRecord) -> str:
+    """How well bands hold what was measured; without trials, what is foretold of the first manoeuvres."""
     scores = record.data["scores"]
     if scores and number(scores["coverage_90"]) is not None:
         held, meant = scores["coverage_90"], min(0.9, scores["widest"])
@@ -160,7 +161,8 @@ def _verdict(record: PredictRecord) -> str:
                 values = row["over_L"] or row
                 unit = "ship lengths" if row["over_L"] else row["unit"]
                 name = "the advance" if row["over_L"] else "the first overshoot"
-                said.append(f"{clean(run['order'])}: {name} is {banded(values)} {unit}")
+                which = clean(run["id"] if run["trial"] else run["order"])
+                said.append(f"{which}: {name} is {banded(values)} {unit}")
     if not said and record.runs[0]["diverged"] < record.data["particles"]:
         run = record.runs[0]
         where = ", ".join(f"{row['words']} {banded(row)} {row['unit']}" for row in run["end"][:3])

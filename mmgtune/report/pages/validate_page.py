@@ -63,7 +63,7 @@ def build(record: ValidationRecord) -> Page:
     return Page(
         title=f"{ship}: models on trials",
         eyebrow=f"{names} on {clean(data['trials'])}",
-        verdict=_verdict(record),
+        verdict=verdict(record),
         lead=(f"The misfit J: {measures.J}.",) if record.scored else (),
         banners=generated_banner({"source": data.get("sources") or {}}),
         warnings=(
@@ -85,7 +85,8 @@ def _best(record: ValidationRecord) -> Mapping[str, Any] | None:
     return min(known, key=lambda one: float(one["L_MSE"])) if known else None
 
 
-def _verdict(record: ValidationRecord) -> str:
+def verdict(record: ValidationRecord) -> str:
+    """Which model does best, and how far off it is."""
     best = _best(record)
     if best is None:
         return "Every model diverged on some trial." if record.scored else "Models against what is stated."
