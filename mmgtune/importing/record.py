@@ -24,6 +24,8 @@ PAIRS = (("latitude", "longitude"), ("x", "y"), ("u", "v"))
 """Quantities that are read together."""
 FEW = 4
 """Significant digits up to which a column is looked at as to whether they suffice."""
+TOGETHER = 0.1
+"""Share of the values of the second of a pair up to which its rows are others than those of the first."""
 FEWEST_PRINTED = 40
 MORE_DIGITS = "log it with more digits"
 
@@ -220,11 +222,27 @@ def as_logged(series: Mapping[str, Series]) -> dict[str, Series]:
     """
     found = dict(series)
     pairs = [pair for pair in PAIRS if set(pair) <= set(found)]
+    for first, second in pairs:
+        found[second] = at_times_of(found[first], found[second])
     for names in [*pairs, *((name,) for name in found if not any(name in pair for pair in pairs))]:
         known = np.any([np.isfinite(found[name].values) for name in names], axis=0)
         if is_seldom(known):
             found |= {name: found[name].at(known) for name in names}
     return found
+
+
+def at_times_of(first: Series, second: Series) -> Series:
+    """The second of a pair at the rows that have the first, where hardly a row has both, as of two sensors that log in
+    turn: on the line between its values, with none further from the next than twice their usual step."""
+    both = np.isfinite(first.values) & np.isfinite(second.values)
+    known = np.isfinite(second.values)
+    if known.sum() < 2 or not np.isfinite(first.values).any() or both.sum() > TOGETHER * known.sum():
+        return second
+    t, values = second.t[known], second.values[known]
+    right = np.clip(np.searchsorted(t, first.t), 1, len(t) - 1)
+    near = (t[right] - t[right - 1] <= 2.0 * second.step) & (first.t >= t[0]) & (first.t <= t[-1])
+    there = np.isfinite(first.values) & near
+    return Series(second.t, np.where(there, np.interp(first.t, t, values), np.nan))
 
 
 def few_digits(printed: FloatArray, unit: str, factor: float) -> Coarse | None:

@@ -112,7 +112,9 @@ def inspected(result: Inspected) -> View:
         )
     less = [_index(key) for key in reversed(PRINCIPAL) if key not in FIRST]
     notes = [f"{capital(words)}." for words in result.notes]
-    return View(repr(result), [], alike(rows), notes, spare=("approach speed [m/s]", *less, "duration [s]", "manoeuvre"))
+    return View(
+        repr(result), [], alike(rows), notes, spare=("approach speed [m/s]", *less, "duration [s]", "manoeuvre")
+    )
 
 
 def _with_units(indices: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:

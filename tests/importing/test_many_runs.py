@@ -147,19 +147,6 @@ def test_names_of_columns_in_another_row_of_each_sheet(tmp_path):
     assert "sheet 'two', row 2" in told
 
 
-@pytest.mark.parametrize("named", [True, False])
-def test_a_sheet_for_each_quantity_is_told_what_to_do(tmp_path, named):
-    names, *body = rows(TURN)
-    sheets = {
-        name: [["time", name if named else "value"], *([row[0], row[k]] for row in body)]
-        for k, name in enumerate(names)
-        if k
-    }
-    told = refusal(lambda: propose_map(book(tmp_path / "log.xlsx", **sheets)))
-    assert "each sheet holds one quantity: 'North', 'East', 'Heading', 'RPM' and 'Rudder'" in told
-    assert "put them on one sheet" in told
-
-
 def test_no_run_takes_the_place_of_another(tmp_path):
     log = book(tmp_path / "log.xlsx", **{"a_3": rows(TURN), "a": rows(ZIGZAG), "a ": rows(TURN)})
     assert [trial.id for trial in imported(log).trials] == ["log_a_3", "log_a", "log_a_4"]

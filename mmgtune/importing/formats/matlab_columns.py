@@ -15,8 +15,10 @@ from ...arrays import FloatArray
 from ...errors import LogError, Problem, among
 from ...limits import LOG_COLUMNS, LOG_RUNS
 from ...phrases import listed
+from ..cells.numerals import holds_numbers
 from ..maps.mapping import LogMap
 from .in_memory import table_of
+from .joining import Apart, Part, joined
 from .matlab import Other, Value, variables
 from .table import Table
 
@@ -97,17 +99,25 @@ def columns_in(held: Mapping[str, Value], path: Path, variable: str = "") -> Col
     usual = max(set(lengths), key=lambda length: (lengths.count(length), length), default=0)
     columns = {name: value for name, value in arrays.items() if len(value) == usual}
     for within in _of_other_times(columns):
-        notes.append(f"left out: '{within}', which has times of its own; bring it to those of the others first")
-        gone = [name for name in columns if name.rpartition(".")[0] == within]
-        other |= {name: f"{len(columns.pop(name))} values at other times" for name in gone}
+        columns = {name: value for name, value in columns.items() if name.rpartition(".")[0] != within}
+    columns, apart, by_time = _with_timed(columns, arrays, path, notes)
+    for within, why in apart.items():
+        notes.append(
+            f"left out: '{within}', which has times of its own; bring it to those of the others first, as {why}"
+        )
+        gone = [name for name in arrays if name.rpartition(".")[0] == within]
+        other |= {name: f"{len(arrays.pop(name))} values at other times" for name in gone}
     together = list(dict.fromkeys(name.partition(".")[0] for name in columns if "." in name))
-    if len(together) > 1:
+    if len(together) > 1 and not by_time:
         shown = listed([f"'{one}'" for one in together], 6)
         notes.append(f"columns of {shown} are taken together, as they have as many rows")
     uneven = {
         name: f"{len(value)} values"
         for name, value in arrays.items()
-        if len(value) != usual and not isinstance(value, list)
+        if name not in columns
+        and len(value) != usual
+        and not isinstance(value, list)
+        and not (by_time and _is_time(name))
     }
     if not columns:
         why = "; ".join(f"'{name}' is a {kind}" for name, kind in list(other.items())[:8]) or "it is empty"
@@ -142,6 +152,85 @@ def _of_other_times(columns: Mapping[str, FloatArray | list[str]]) -> list[str]:
         if not np.all(np.abs(off) <= 0.5 * step):
             found.append(within)
     return found
+
+
+def _with_timed(
+    columns: Mapping[str, FloatArray | list[str]],
+    arrays: Mapping[str, FloatArray | list[str]],
+    path: Path,
+    notes: list[str],
+) -> tuple[dict[str, FloatArray | list[str]], dict[str, str], bool]:
+    """Columns with those of structures and timeseries that have times of their own, put together by these.
+
+    columns  as long as each other, as they are where no other has times
+
+    Returns them, what could not be put to them by what stands before the last point of its name: why, and whether any
+    was.
+    """
+    found = dict(columns)
+    time = next((name for name in found if _is_time(name)), None)
+    parts = {} if time is None else _timed(arrays, found)
+    apart: dict[str, str] = {}
+    if time is None or not parts:
+        return found, apart, False
+    # Others with the same times say nothing more by these.
+    own = [name for name in found if name == time or not (_is_time(name) and _same(found[name], found[time]))]
+    own.remove(time)
+    taken = [_part(time.rpartition(".")[0] or time, time, own, found)]
+    for within, (clock, names) in parts.items():
+        try:
+            joined([*taken, one := _part(within, clock, names, arrays)], path)
+            taken.append(one)
+        except Apart as why:
+            apart[within] = str(why)
+    if len(taken) > 1:
+        made = joined(taken, path)
+        notes.append(made.note)
+        found = {time: _plain(made.times), **dict(zip(made.names, map(_plain, made.columns), strict=True))}
+    return found, apart, len(taken) > 1
+
+
+def _is_time(name: str) -> bool:
+    return name.rpartition(".")[2].lower() in TIMES
+
+
+def _same(one: FloatArray | list[str], other: FloatArray | list[str]) -> bool:
+    if isinstance(one, list) or isinstance(other, list):
+        return one == other
+    return bool(np.array_equal(one, other, equal_nan=True))
+
+
+def _timed(
+    arrays: Mapping[str, FloatArray | list[str]], without: Mapping[str, object]
+) -> dict[str, tuple[str, list[str]]]:
+    """Structures that have times and columns as long as these, by their names: those two; but for some columns."""
+    found = {}
+    for time in arrays:
+        within = time.rpartition(".")[0]
+        inside = [name for name in arrays if name.rpartition(".")[0] == within and name != time]
+        if not within or time in without or not _is_time(time) or any(map(_is_time, inside)):
+            continue
+        names = [name for name in inside if len(arrays[name]) == len(arrays[time])]
+        if names:
+            found[within] = time, names
+    return found
+
+
+def _part(within: str, time: str, names: Sequence[str], arrays: Mapping[str, FloatArray | list[str]]) -> Part:
+    import pandas as pd
+
+    def column(name: str) -> Any:
+        return pd.Series(arrays[name], dtype="string" if isinstance(arrays[name], list) else "float64")
+
+    return Part(within, column(time), names, [column(name) for name in names])
+
+
+def _plain(column: Any) -> FloatArray | list[str]:
+    """Numbers of a pandas column, or its texts."""
+    if holds_numbers(column):
+        return np.asarray(column.to_numpy(dtype=np.float64))
+    texts: list[str] = column.astype(object).where(column.notna(), None).tolist()
+    return texts
 
 
 def runs_in(held: Mapping[str, Value]) -> list[str]:
@@ -252,8 +341,8 @@ def _spread(held: Mapping[str, Value], notes: list[str]) -> Flat:
                 times = series[0]
                 _join(out, {"Time": times}, name)
             if not np.array_equal(times, series[0]):
-                out[name] = Other("series with times of its own")
-                notes.append(f"left out: '{name}', which has times of its own; bring it to those of the others first")
+                own = _of_matrix("data", series[1], {}, notes)
+                _join(out, {f"{name}.{key}": one for key, one in {"Time": series[0], **own}.items()}, name)
                 continue
             _join(out, _of_matrix(name, series[1], {}, notes), name)
         elif isinstance(value, dict):

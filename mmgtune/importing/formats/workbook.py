@@ -7,7 +7,7 @@ import itertools
 import re
 import warnings
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,11 +16,13 @@ from typing import Any
 from ...errors import LogError, Problem, among, brief, reason
 from ...limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS, SHEET_ROWS
 from ...phrases import listed
-from ..cells.headers import find_column
+from ...units import is_unit
+from ..cells.headers import find_column, unit_in
 from ..cells.numerals import number_in
 from ..cells.with_units import is_with_unit
-from ..maps.mapping import LogMap
+from ..maps.mapping import LogMap, TimeSource
 from .in_memory import table_of
+from .joining import Apart, Joined, Part, joined
 from .kept import opened
 from .table import InPart, Table
 
@@ -73,6 +75,8 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
     """
     import pandas as pd
 
+    if log_map.joined:
+        return _read_joined(path, log_map)
     sheet = sheet_of(path, log_map.sheet)
     skip = _head_of(sheet, log_map)
     rows = sheet.rows[skip:]
@@ -101,6 +105,86 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
     empty = [table.headers[name] for name, values in table.columns.items() if not (values == values).any()]
     require_results(path, sheet.name, formulas_in(path, sheet.name, names, empty))
     return table
+
+
+def _read_joined(path: Path, log_map: LogMap) -> Table:
+    """The columns of several sheets that a map names, put together by their times."""
+    asked = [one for source in log_map.sources.values() for one in source.columns.values() if isinstance(one, str)]
+
+    def named(sheet: str, column: str) -> str:
+        """As the map calls it: by its sheet too, or by its name alone."""
+        full = in_sheet(sheet, column)
+        return full if find_column(full, asked) is not None else column
+
+    try:
+        found = joined_sheets(path, log_map.joined, log_map.skip, log_map.time, named)
+    except Apart as why:
+        fix = "put what belongs together on one sheet, or name other sheets in [log]"
+        raise LogError(Problem("the sheets cannot be put together by their times", str(path), str(why), fix)) from why
+    table = table_of(path, log_map, found.names, found.columns, 1, "row", f"{path}, {len(log_map.joined)} sheets")
+    table.notes.append(found.note)
+    return table
+
+
+def in_sheet(sheet: str, column: str) -> str:
+    """How a column of one of several sheets is called, where its name alone does not tell what it is."""
+    return f"{sheet}.{column}"
+
+
+def joined_sheets(
+    path: Path, sheets: Sequence[str], skip: int, time: TimeSource, named: Callable[[str, str], str]
+) -> Joined:
+    """Sheets of a workbook as one table, its first column the time.
+
+    sheets  names of them
+    skip    rows above the names of the columns, in a sheet that has not the column of time in another row
+    time    what the column of time is called, or its number; a sheet that has none of that name has it in its first
+    named   (sheet, column) -> what the column is called in the table
+
+    Raises LogError where a sheet is not there, and Apart where their times do not fit together.
+    """
+    import pandas as pd
+
+    parts: list[Part] = []
+    heads: list[str] = []
+    for name in sheets:
+        sheet = sheet_of(path, name)
+        texts = [[as_text(cell) for cell in row] for row in sheet.rows]
+        rows = [[cell or "" for cell in row] for row in texts[:TITLES]]
+        wanted = time.column if time.column is not None else 1
+        first = next((k for k in (skip, *range(len(rows))) if k < len(rows) and _names(rows[k], wanted)), skip)
+        if first >= len(rows):
+            raise Apart(f"'{name}' has no rows below the first {skip}")
+        names = rows[first]
+        body = texts[first + 1 :]
+        below = [one or "" for one in body[0]] if body else []
+        units = {k: one for k, one in enumerate(below) if is_unit(one.strip("[]()"))}
+        if units and not any(_numeric(one) for one in below):
+            names = [f"{one} [{units[k].strip('[]()')}]" if k in units else one for k, one in enumerate(names)]
+            body = body[1:]
+        found = find_column(wanted, names)
+        at = 0 if found is None else found
+        columns = [
+            pd.Series([row[k] if k < len(row) else None for row in body], dtype="string") for k in range(len(names))
+        ]
+        own = [k for k, one in enumerate(names) if k != at and one.strip()]
+        empty = [names[k] for k in own if not columns[k].notna().any()]
+        require_results(path, name, formulas_in(path, name, names, empty))
+        heads.append(names[at])
+        parts.append(Part(name, columns[at], [named(name, names[k]) for k in own], [columns[k] for k in own]))
+    if len(said := {unit for one in heads if (unit := unit_in(one))}) > 1:
+        raise Apart(f"they count their times in {listed(sorted(said))}")
+    made = joined(parts, path, time)
+    head = next((one for one in heads if unit_in(one)), heads[0])
+    return replace(made, names=[head, *made.names], columns=[made.times, *made.columns])
+
+
+def _names(row: Sequence[str], time: str | int) -> bool:
+    """Whether a row holds names of columns: that of the time among them, or, where that is a number, no numbers."""
+    if isinstance(time, str):
+        return find_column(time, row) is not None
+    filled = [one for one in row if one]
+    return len(filled) > 1 and not any(_numeric(one) for one in filled)
 
 
 def _head_of(sheet: Sheet, log_map: LogMap) -> int:
@@ -171,9 +255,9 @@ def _outlines(book: Any, path: Path) -> list[Outline]:
         raise LogError(Problem("the workbook has no sheet with cells", str(path), fix="give another file"))
     for one in book.worksheets:
         rows = _rows(one, path, LOOKED_AT)
-        outlines.append(Outline(one.title, one.sheet_state != "visible", rows, _numbers_in(rows, COLUMNS)))
+        outlines.append(Outline(one.title, one.sheet_state != "visible", rows, numbers_in_rows(rows, COLUMNS)))
     if not any(one.numbers for one in outlines):
-        return [replace(one, numbers=_numbers_in(one.rows, 2)) for one in outlines]
+        return [replace(one, numbers=numbers_in_rows(one.rows, 2)) for one in outlines]
     return outlines
 
 
@@ -278,7 +362,7 @@ def _rows(sheet: Any, path: Path, most: int | None = None) -> list[tuple[Any, ..
     return rows
 
 
-def _numbers_in(rows: Sequence[Sequence[Any]], least: int) -> int:
+def numbers_in_rows(rows: Sequence[Sequence[Any]], least: int) -> int:
     """How many numbers stand in rows that hold so many at least and little else; also as texts, or with a unit."""
     total = 0
     for row in rows:

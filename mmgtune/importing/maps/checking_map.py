@@ -43,10 +43,10 @@ def check(made: LogMap, reader: TomlReader) -> None:
         reader.problem("'log.fields' is for logs without a header", "log", "fields", "columns have names there")
     text = ("delimiter", "encoding")  # texts in cells may have decimal commas wherever they stand
     meaningless = {
-        "csv": (("sheet", "variable"), "text"),
-        "parquet": ((*text, "skip", "header", "fields", "sheet", "variable"), "Parquet"),
+        "csv": (("sheet", "join", "variable"), "text"),
+        "parquet": ((*text, "skip", "header", "fields", "sheet", "join", "variable"), "Parquet"),
         "xlsx": ((*text, "variable"), "a workbook"),
-        "mat": ((*text, "skip", "header", "sheet"), "a MATLAB file"),
+        "mat": ((*text, "skip", "header", "sheet", "join"), "a MATLAB file"),
     }
     if made.format in meaningless:
         _meaningless(reader, "log", *meaningless[made.format])

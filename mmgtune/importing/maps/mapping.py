@@ -45,6 +45,7 @@ TABLES = {
         "fields",
         "missing",
         "sheet",
+        "join",
         "variable",
     ),
     "trial": ("ship", "id", "manoeuvre", "group", "source", "note", "noise"),
@@ -153,6 +154,7 @@ class LogMap:
     name        file or preset it was read from
     some        maps of logs that differ, by the pattern of their names
     sheet       of a workbook, "" for its first that holds rows
+    joined      sheets whose rows are put together by their times; () where one is read, or each becomes a trial
     variable    of a MATLAB file, a structure or a matrix that holds the columns, such as "log" or "data.run(2)"; ""
                 where they are variables themselves
     parts       sheets or variables that each become a trial of one log, the first of them also in ``sheet`` or
@@ -181,6 +183,7 @@ class LogMap:
     header: bool = True
     fields: int | None = None
     sheet: str = ""
+    joined: tuple[str, ...] = ()
     variable: str = ""
     parts: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()

@@ -164,6 +164,10 @@ class _Reader(TomlReader):
         sources = self.sources()
         point, stated = self.point()
         sheets, held = self.parts(log, "sheet"), self.parts(log, "variable")
+        join = self.flag(log, "join", default=False)
+        if join and len(sheets) < 2:
+            fix = 'write sheet = ["...", "..."], the sheets that hold a part of the log each'
+            self.problem("'log.join' is true, but no sheets are named that could be joined", "log", "join", fix=fix)
         made = LogMap(
             name=self.path.stem,
             path=self.path,
@@ -177,8 +181,9 @@ class _Reader(TomlReader):
             fields=self.count(log, "fields") or None,
             missing=self.texts(log, "missing"),
             sheet=next(iter(sheets), ""),
+            joined=tuple(sheets) if join else (),
             variable=next(iter(held), ""),
-            parts=tuple(one) if len(one := sheets or held) > 1 else (),
+            parts=tuple(one) if len(one := sheets or held) > 1 and not join else (),
             time=self.time(),
             sources=sources,
             axes=self.choice("velocity", self.table("velocity"), "axes", ("ship", "earth")),
@@ -275,11 +280,11 @@ class _Reader(TomlReader):
             return 0
         return value
 
-    def flag(self, table: dict[str, Any], key: str) -> bool:
-        value = table.get(key, True)
+    def flag(self, table: dict[str, Any], key: str, default: bool = True) -> bool:
+        value = table.get(key, default)
         if not isinstance(value, bool):
             self.problem(f"'log.{key}' is {brief(value)}", "log", key, fix=f"write {key} = true or {key} = false")
-            return True
+            return default
         return value
 
     def number(self, name: str, table: dict[str, Any], key: str, default: float, least: float | None = None) -> float:

@@ -30,6 +30,7 @@ from ..formats.parquet_log import batches, being_read, schema_of
 from ..formats.sides import midships, sided, takes_side
 from ..formats.table import MISSING
 from ..formats.text import PEEK, Lines, fields_of, start_of
+from ..formats.workbook import Outline
 from ..maps.mapping import LogMap, TimeSource
 from .words import DATE, TIME, known_unit, quantity_named
 
@@ -45,6 +46,8 @@ NO_ANGLES = {one for kind in ("m", "s", "m/s", "1/s") for one in units.factors(k
 """Units behind numbers that may look like minutes and sides of an angle."""
 _PATH = re.compile(r"[./_:]")
 """What divides the name of a signal."""
+FEWEST = 10
+"""Rows from which a sheet may be a part of a log."""
 _HEAD = ("skip", "header", "fields")
 """Keys of [log] that say where the names of the columns are."""
 HEAD, ALMOST = 20, 0.95
@@ -354,7 +357,8 @@ def _of_workbook(path: Path) -> list[Sample]:
     outlines = outlines_of(path)
     logs = logs_among(outlines) or [one.name for one in outlines][-1:]
     heads = {one.name: _head(one.rows[:HEADING]) for one in outlines if one.name in logs}
-    _require_one_sheet(path, {name: heads[name][0] for name in logs})
+    if (together := _joined_sheets(path, outlines)) is not None:
+        return [together]
     # Sheets that are written alike are runs; of others the first is the log.
     alike = [one for one in logs if _alike(heads[logs[0]], heads[one])]
     layout: dict[str, Any] = {"format": "xlsx"}
@@ -377,22 +381,64 @@ def _of_workbook(path: Path) -> list[Sample]:
     return [replace(of, notes=[*notes, *of.notes], part=one if several else "") for one, of in sheets.items()]
 
 
-def _require_one_sheet(path: Path, names: Mapping[str, Sequence[str]]) -> None:
-    """Raise LogError for a workbook that has a sheet for each quantity, by the names of the columns of each sheet."""
-    found = {}
-    for sheet, columns in names.items():
-        filled = [one for one in columns if one.strip()]
-        of = {one: quantity_named(one) for one in filled}
-        values = [one for one in filled if of[one] not in (TIME, DATE)]
-        if len(values) != 1 or len(values) == len(filled):
-            return
-        found[sheet] = of[values[0]] or quantity_named(sheet)
-    if len({one for one in found.values() if one}) < max(2.0, 0.5 * len(found)):
-        return
-    shown = listed([f"'{one}'" for one in found], 8)
-    what, why = f"each sheet holds one quantity: {shown}", "a log has a row for each time and a column for each of them"
-    fix = "put them on one sheet: a column of time, and one for each; cells without a value at a time stay empty"
-    raise LogError(Problem(what, str(path), why, fix))
+def _joined_sheets(path: Path, outlines: Sequence[Outline]) -> Sample | None:
+    """A workbook whose sheets hold some quantities each, with times of their own, as one log; None of any other.
+
+    Raises LogError where each sheet holds one quantity and their times do not allow to put them together.
+    """
+    from ..formats.joining import Apart
+    from ..formats.workbook import in_sheet, joined_sheets
+
+    held = {one.name: found for one in outlines if not one.hidden and (found := _held(one)) is not None}
+    quantities = [{of for of in one.quantities.values() if of} for one in held.values()]
+    every = [of for one in quantities for of in one]
+    if len(held) < 2 or len(set(every)) < len(every) or sum(map(bool, quantities)) < max(2, len(held) // 2):
+        return None
+    single = all(len(one.quantities) == 1 for one in held.values())
+
+    def named(sheet: str, column: str) -> str:
+        """By its name alone where that says what it is, and no other sheet has one of that name."""
+        twice = sum(column in one.quantities for one in held.values()) > 1
+        return column if quantity_named(column) and not twice else in_sheet(sheet, column)
+
+    time = next(iter(held.values())).time
+    try:
+        table = joined_sheets(path, [*held], 0, TimeSource(column=time), named)
+    except Apart as error:
+        if not single:
+            return None
+        shown = listed([f"'{one}'" for one in held], 8)
+        why = f"a log has a row for each time and a column for each of them, and {error}"
+        fix = "put them on one sheet: a column of time, and one for each; cells without a value at a time stay empty"
+        raise LogError(Problem(f"each sheet holds one quantity: {shown}", str(path), why, fix)) from error
+    layout = {"format": "xlsx", "sheet": [*held], "join": True}
+    made = _made(path, layout, table.names, [""] * len(table.names), [one[:ROWS] for one in table.columns])
+    return replace(made, notes=[table.note])
+
+
+@dataclass(frozen=True)
+class _Held:
+    """What a sheet holds beside its times: the name of their column, and the quantities of the others by name."""
+
+    time: str
+    quantities: Mapping[str, str]
+
+
+def _held(outline: Outline) -> _Held | None:
+    """What a sheet holds; None where it has no column of times, no other one, or hardly any rows."""
+    from ..formats.workbook import numbers_in_rows
+
+    names, header = _head(outline.rows[:HEADING])
+    filled = [one for one in names if one.strip()]
+    named = [[one for one in filled if quantity_named(one) == of] for of in (TIME, DATE)]
+    times = named[0] or named[1]
+    others = [one for one in filled if one not in times]
+    if header is None or len(times) != 1 or not others or numbers_in_rows(outline.rows, 2) < 2 * FEWEST:
+        return None
+    of = {one: quantity_named(one) for one in others}
+    if len(others) == 1 and not of[others[0]]:
+        of[others[0]] = quantity_named(outline.name)
+    return _Held(times[0], of)
 
 
 def _alike(one: tuple[list[str], int | None], other: tuple[list[str], int | None]) -> bool:

@@ -70,7 +70,7 @@ class Windows:
     @property
     def _half(self) -> int:
         """Rows on either side of an edge that are taken with it."""
-        return max(0, int(np.diff(self.edges).min(initial=1)) // 4)
+        return int(np.diff(self.edges).min()) // 4 if len(self.edges) > 1 else 0
 
     def at_edges(self, values: FloatArray) -> FloatArray:
         """(n_windows + 1,) what values (n_rows,) are around the edges."""
