@@ -9,6 +9,6 @@ bearings    position and heading; look: the motion that follows from them
 motions     yaw rate and velocities; orders: rudder and propeller; winds: true and apparent
 finding     every quantity, of several logs at once; guess: one of them
 writing     the map and a table
-misnamed    units that behaviour refutes
+misnamed    units that behaviour refutes; unsaid: those that no name says
 elsewhere   which column is what another one is said to be
 """

@@ -21,6 +21,7 @@ from .finder import Finder
 from .guess import LIKELY, SURE, Guess
 from .look import Look
 from .motions import courses, speeds, velocities, yaw_rates
+from .unsaid import asked_length, other_length
 from .windows import Windows
 from .words import ORDER, OTHER, ROLL, TIME
 
@@ -77,6 +78,14 @@ def position_and_heading(find: Finder) -> None:
     time_unit(find)
     track, course, led = _beside_the_course(find, motion.scores, motion.windows)
     find.looks = [Look(s, w, track) for s, w in zip(find.samples, motion.windows, strict=True) if w.enough]
+    length, why = ("", "") if track.geographic else other_length(find, find.looks, (track.x, track.y))
+    if length:
+        # The rest is looked at with the positions in that unit, which is asked for.
+        for k in (track.x, track.y):
+            find.units_said[k] = length
+        motion = _motion_with(find, motion.unit)
+        track, course, led = _beside_the_course(find, motion.scores, motion.windows)
+        find.looks = [Look(s, w, track) for s, w in zip(find.samples, motion.windows, strict=True) if w.enough]
     if find.said[track.psi] == "cog":  # that the course follows the course is no evidence
         find.notes.append(
             f"no heading is found: {find.shown(track.psi)}, the course over ground, is taken for it, which lacks the "
@@ -88,6 +97,8 @@ def position_and_heading(find: Finder) -> None:
             "exchange them in the map if the name is right"
         )
     _add_columns(find, track, _confidence(find, motion.scores, track, course), motion.words, led)
+    for name in ("x", "y") if length else ():
+        find.guesses[name] = asked_length(find.guesses[name], length, why)
     _doubt_mirror_image(find, motion.scores, track)
 
 

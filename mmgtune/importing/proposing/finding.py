@@ -19,6 +19,7 @@ from .misnamed import doubt_units
 from .no_values import without_codes
 from .sampling import Sample
 from .unread import doubt_thousands, unread
+from .unsaid import say_units
 
 
 def found_in(samples: Sequence[Sample]) -> Finder:
@@ -42,6 +43,7 @@ def found_in(samples: Sequence[Sample]) -> Finder:
         rudder(find)
         propeller(find)
     by_name(find)
+    say_units(find)
     whole_degrees(find)
     few_digits(find)
     missing(find)
