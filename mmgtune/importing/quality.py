@@ -42,10 +42,10 @@ def quality_of(
     """
     columns = trial.columns
     turned = turning(columns)
-    misfits = position_misfits(columns)
+    misfits = position_misfits(columns, among=(Reading.AS_ASKED, Reading.IN_EARTH_AXES))
     findings = [
         _named(replace(one, fix=fix_in_map(one.fix)), record, log_map)
-        for one in (*check_trial(trial), *doubts(trial, record, log_map))
+        for one in (*check_trial(trial, usable=True), *doubts(trial, record, log_map))
     ]
     evidence = rudder_evidence(trial.t, columns)
     return {
@@ -239,7 +239,7 @@ def _residuals(trial: Trial, record: Record, began: float, log_map: LogMap) -> d
 
 def _changes(trial: Trial, name: str) -> dict[str, Any]:
     """How fast an input changes, in units people read, and whether only orders do so."""
-    step, rate = fastest_change(trial.t, trial.columns[name])
+    step, rate = fastest_change(trial, name)
     unit, factor = shown_in(INPUTS[name].unit)
     return {
         f"fastest_{unit}_per_s": rate * factor,

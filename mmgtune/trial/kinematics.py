@@ -6,9 +6,10 @@ noise of about 0.4 m, 0.2 deg, 0.02 m/s and 0.03 deg/s at 1 Hz.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from enum import Enum, auto
+from functools import cached_property
 
 import numpy as np
 
@@ -138,7 +139,18 @@ class _Ways:
 
     def misfit(self, steps: FloatArray) -> float:
         """Of ways (n_intervals, 2) from those moved."""
-        return _misfit(self.moved, steps, self.usable, self.window)
+        whole, length = self._lengths
+        if not len(length):
+            return 0.0
+        error = _windows(np.where(self.usable[:, None], self.moved - steps, 0.0), self.window)[whole]
+        return float(np.median(np.minimum(np.hypot(*error.T) / length, 1e6)))
+
+    @cached_property
+    def _lengths(self) -> tuple[BoolArray, FloatArray]:
+        """Windows in which all is known, and how far the ship moved in each of these [m]."""
+        whole = _windows(self.usable.astype(np.float64), self.window) > self.window - 0.5
+        way = _windows(np.where(self.usable[:, None], self.moved, 0.0), self.window)[whole]
+        return whole, np.maximum(np.hypot(*way.T), 1e-12)
 
 
 def _ways(columns: Mapping[str, FloatArray], longer: int = 1) -> _Ways | None:
@@ -163,8 +175,12 @@ def _ways(columns: Mapping[str, FloatArray], longer: int = 1) -> _Ways | None:
     return _Ways(moved, psi, u, v, dt, usable, window)
 
 
-def position_misfits(columns: Mapping[str, FloatArray], longer: int = 1) -> dict[Reading, float]:
+def position_misfits(
+    columns: Mapping[str, FloatArray], longer: int = 1, among: Collection[Reading] = tuple(Reading)
+) -> dict[Reading, float]:
     """How badly the velocities explain the positions, by the way they are read: 0 perfectly, 1 not at all.
+
+    among  readings that are asked for: each takes as long as the other
 
     A misfit is the median over windows of the distance between
     measured and integrated displacement, over the displacement; windows are long enough for white noise not to matter,
@@ -175,18 +191,18 @@ def position_misfits(columns: Mapping[str, FloatArray], longer: int = 1) -> dict
     if ways is None:
         return {}
     psi, v = ways.psi, ways.v
-    readings = {
-        Reading.AS_ASKED: ways.rotated(psi, v),
-        Reading.IN_EARTH_AXES: np.column_stack([ways.u, v]) * ways.dt[:, None],
-        Reading.TO_PORT: ways.rotated(psi, -v),
-        Reading.IN_DEGREES: ways.rotated(psi * DEG, v),
-        Reading.SWAPPED: ways.rotated(psi, v)[:, ::-1],
-        Reading.IN_KNOTS: ways.rotated(psi, v, KNOT),
-        Reading.NOT_KNOTS: ways.rotated(psi, v, 1.0 / KNOT),
-        Reading.TO_WEST: ways.rotated(psi, v) * [1.0, -1.0],
-        Reading.TWICE: ways.rotated(psi / DEG, v),
+    readings: dict[Reading, Callable[[], FloatArray]] = {
+        Reading.AS_ASKED: lambda: ways.rotated(psi, v),
+        Reading.IN_EARTH_AXES: lambda: np.column_stack([ways.u, v]) * ways.dt[:, None],
+        Reading.TO_PORT: lambda: ways.rotated(psi, -v),
+        Reading.IN_DEGREES: lambda: ways.rotated(psi * DEG, v),
+        Reading.SWAPPED: lambda: ways.rotated(psi, v)[:, ::-1],
+        Reading.IN_KNOTS: lambda: ways.rotated(psi, v, KNOT),
+        Reading.NOT_KNOTS: lambda: ways.rotated(psi, v, 1.0 / KNOT),
+        Reading.TO_WEST: lambda: ways.rotated(psi, v) * [1.0, -1.0],
+        Reading.TWICE: lambda: ways.rotated(psi / DEG, v),
     }
-    return {reading: ways.misfit(steps) for reading, steps in readings.items()}
+    return {reading: ways.misfit(steps()) for reading, steps in readings.items() if reading in among}
 
 
 OFF = 0.05
@@ -249,16 +265,6 @@ def lever_of(columns: Mapping[str, FloatArray]) -> Lever | None:
         return None
     x, y = np.linalg.lstsq(design, (ways.moved - logged)[known].ravel(), rcond=None)[0]
     return Lever(float(x), float(y), ways.misfit(logged + x * turned[0] + y * turned[1]))
-
-
-def _misfit(moved: FloatArray, steps: FloatArray, usable: np.ndarray, window: int) -> float:
-    whole = _windows(usable.astype(np.float64), window) > window - 0.5
-    if not whole.any():
-        return 0.0
-    way = _windows(np.where(usable[:, None], moved, 0.0), window)[whole]
-    error = _windows(np.where(usable[:, None], moved - steps, 0.0), window)[whole]
-    length = np.maximum(np.hypot(*way.T), 1e-12)
-    return float(np.median(np.minimum(np.hypot(*error.T) / length, 1e6)))
 
 
 def _windows(values: FloatArray, window: int) -> FloatArray:

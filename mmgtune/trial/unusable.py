@@ -268,10 +268,13 @@ def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
     psi = columns["psi"][np.isfinite(columns["psi"])]
     if len(psi) == 0 or np.abs(psi).max() < 2.0 * np.pi or not {"x", "y", "u", "v"} <= set(columns):
         return []
+    misfits = position_misfits(columns, among=(Reading.IN_DEGREES,))
+    if not misfits or misfits[Reading.IN_DEGREES] > FITS:
+        return []
     misfits = position_misfits(columns)
     # Only so: angles of a few radians read in degrees are nearly no angles, as if velocities were in earth axes.
     others = [misfit for reading, misfit in misfits.items() if reading is not Reading.IN_DEGREES]
-    if not misfits or misfits[Reading.IN_DEGREES] > FITS or min(others) < 3.0 * FITS:
+    if min(others) < 3.0 * FITS:
         return []
     problems = [_in_degrees("psi", where, "read in degrees, and only so, it leads u and v along the positions")]
     if "r" in columns and turned.span > 6.0 and turned.miss < 0.15 * turned.span:

@@ -12,6 +12,7 @@ import pytest
 from mmgtune.arrays import FloatArray
 from mmgtune.resources import trial_set_names
 from mmgtune.trial import Trial, check_trial, load_trials, measured_around
+from mmgtune.trial.kinematics import Reading, position_misfits
 from mmgtune.trial.schema import known_column
 
 from .made import DEG, changed, made, said, with_value
@@ -266,3 +267,31 @@ def test_notes() -> None:
 def test_worst_first() -> None:
     trial = with_value(made(source="generated"), "x", 40, np.nan)
     assert [f.severity for f in check_trial(trial)] == ["warning", "note"]
+
+
+def test_spikes_of_a_channel_are_looked_for_once(monkeypatch):
+    """Several checks pass over them; they took a third of an import."""
+    from mmgtune.trial.checks import motion_checks
+
+    looked, before = [], motion_checks.spikes
+    monkeypatch.setattr(motion_checks, "spikes", lambda values, share: looked.append(share) or before(values, share))
+    trial = load_trials("suzaku")["turn_p35"]
+    check_trial(trial)
+    assert len(looked) == 8
+    check_trial(replace(trial, x=trial.x + 1.0))
+    assert len(looked) == 16
+
+
+def test_a_reading_alone_misses_positions_as_among_all():
+    columns = load_trials("suzaku")["zigzag_20"].columns
+    every = position_misfits(columns)
+    assert list(every) == list(Reading)
+    for reading in Reading:
+        assert position_misfits(columns, among=(reading,)) == {reading: every[reading]}
+
+
+def test_what_is_known_to_be_usable_is_not_looked_at_again():
+    trial = load_trials("suzaku")["turn_p35"]
+    assert check_trial(trial, usable=True) == check_trial(trial)
+    broken = replace(trial, delta=100.0 * trial.delta)
+    assert [one.severity for one in check_trial(broken)] == ["error"]

@@ -23,16 +23,17 @@ from .wind_checks import wind_findings
 __all__ = ["Finding", "check_trial"]
 
 
-def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
+def check_trial(trial: Trial, L_pp: float | None = None, *, usable: bool = False) -> list[Finding]:
     """Everything a user should know about a trial, worst first.
 
-    L_pp  of the ship [m], where it is known: speeds and revolutions are then held against it
+    L_pp    of the ship [m], where it is known: speeds and revolutions are then held against it
+    usable  whether it is known already that the trial can be used, as ``unusable`` says
 
     Where there are errors the trial cannot be used, and nothing but them is reported: ``read_trial`` raises them as
     TrialError, so they are seen here only for trials made in memory.
     """
     where = str(trial.path or trial.id)
-    errors = unusable(trial.columns, where)
+    errors = [] if usable else unusable(trial.columns, where)
     if errors:
         return [Finding("error", problem.what, problem.where, problem.why, problem.fix) for problem in errors]
     with np.errstate(all="ignore"):

@@ -12,7 +12,7 @@ from ...units import DEG
 from ..model import Trial
 from ..schema import MAIN_INPUTS, directions
 from .finding import Finding, Rescale
-from .motion_checks import spikes
+from .motion_checks import spikes_of
 
 BRAKING = 45.0 * DEG
 """Rudder angle [rad] beyond which it is there to brake."""
@@ -106,7 +106,7 @@ def _steering(trial: Trial) -> BoolArray:
 
 def _rudder_speed(trial: Trial, name: str, where: str) -> Finding | None:
     """Orders jump in one sample.  Steering gears follow the size of a ship as its yaw rate and its shaft do."""
-    step, rate = fastest_change(trial.t, trial.columns[name])
+    step, rate = fastest_change(trial, name)
     yaw = np.abs(trial.r[np.isfinite(trial.r)])
     quick = FASTEST_GEAR * max(1.0, float(np.percentile(np.abs(trial.n), 99.0)) / SLOWEST_MODEL)
     if step < 4.9 * DEG or rate < quick or rate < 8.0 * np.percentile(yaw, 95.0):
@@ -123,7 +123,7 @@ def _rudder_speed(trial: Trial, name: str, where: str) -> Finding | None:
 def _shaft_speed(trial: Trial, name: str, where: str) -> Finding | None:
     """Only for shafts as slow as those of ships: a model's motor can do anything."""
     n = trial.columns[name]
-    step, rate = fastest_change(trial.t, n)
+    step, rate = fastest_change(trial, name)
     largest = float(np.percentile(np.abs(n), 99.0))
     if largest > FASTEST_SHAFT:
         return None
@@ -202,10 +202,11 @@ def jump_between_holds(t: FloatArray, values: FloatArray) -> float:
     return float(np.max(steps[k][jumps], initial=0.0))
 
 
-def fastest_change(t: FloatArray, values: FloatArray) -> tuple[float, float]:
-    """Largest change between neighbouring samples, and its rate per second; spikes do not count."""
+def fastest_change(trial: Trial, name: str) -> tuple[float, float]:
+    """Largest change of an input between neighbouring samples, and its rate per second; spikes do not count."""
+    t, values = trial.t, trial.columns[name]
     kept = np.ones(len(values), dtype=bool)
-    kept[spikes(values, share=0.2)] = False
+    kept[spikes_of(trial, name)] = False
     steps = np.abs(np.diff(values[kept]))
     k = int(np.argmax(steps))
     return float(steps[k]), float(steps[k] / np.diff(t[kept])[k])

@@ -16,7 +16,7 @@ from ..kinematics import halfway, middle
 from ..model import Trial
 from .finding import Finding
 from .in_parts import part_findings
-from .motion_checks import full_turns, spikes
+from .motion_checks import full_turns, spikes_of
 from .position_jumps import jump_findings
 
 FASTEST = {
@@ -77,7 +77,7 @@ def _changes(trial: Trial, where: str) -> dict[str, Finding]:
     for name, (most, unit) in FASTEST.items():
         values = trial.columns[name]
         kept = np.isfinite(values)
-        kept[spikes(values, share=0.02)] = False
+        kept[spikes_of(trial, name)] = False
         rows = np.flatnonzero(kept)
         if len(rows) < 10:
             continue

@@ -7,7 +7,7 @@ takes it for slow noise.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -152,24 +152,24 @@ def _change(
     for more in (a[:, None], *(np.column_stack([a, other]) for other in instead)):
         P = _basis(np.column_stack([Q, summed(more)]))
         least = min(least, float(np.sum((rest_b - P @ (P.T @ rest_b)) ** 2)))
-    best: tuple[float, int, Any, Any] | None = None
-    for k in range(FEWEST, STRIDES - FEWEST + 1):
-        parts = np.column_stack([np.where(stride < k, a, 0.0), np.where(stride >= k, a, 0.0)])
-        size = np.abs(parts).sum(axis=0)
-        if size.min() < max(enough, PART * size.sum()):
-            continue
-        own = summed(parts)
-        own = own - Q @ (Q.T @ own)
-        square = own.T @ own
-        if not np.linalg.cond(square) < 1e8:  # of a ship at rest it is no number
-            continue
-        factors = np.linalg.solve(square, own.T @ rest_b)
-        squares = float(np.sum((rest_b - own @ factors) ** 2))
-        if best is None or squares < best[0]:
-            best = squares, k, factors, np.linalg.inv(square)
-    if best is None:
+    # All places where it may change at once: (n_places,) of them, and behind that before and behind each.
+    places = np.arange(FEWEST, STRIDES - FEWEST + 1)
+    before_it = stride < places[:, None]
+    sides = np.stack([np.where(before_it, a, 0.0), np.where(before_it, 0.0, a)])
+    size = np.abs(sides).sum(axis=2)
+    own = summed(sides.reshape(-1, len(a)).T)
+    own = (own - Q @ (Q.T @ own)).reshape(len(a), 2, len(places)).transpose(2, 0, 1)
+    square = own.transpose(0, 2, 1) @ own
+    fair = (size.min(axis=0) >= np.maximum(enough, PART * size.sum(axis=0))) & np.isfinite(square).all(axis=(1, 2))
+    fair[fair] = np.linalg.cond(square[fair]) < 1e8  # of a ship at rest it is no number
+    if not fair.any():
         return None
-    squares, k, factors, inverse = best
+    places, own, square = places[fair], own[fair], square[fair]
+    every = np.linalg.solve(square, own.transpose(0, 2, 1) @ rest_b[:, None])
+    left = ((rest_b[:, None] - own @ every) ** 2).sum(axis=(1, 2))
+    least_at = int(np.argmin(left))
+    squares, k, factors = float(left[least_at]), int(places[least_at]), every[least_at, :, 0]
+    inverse = np.linalg.inv(square[least_at])
     # Each half of what comes before differs from each half behind, or it was something else that passed.
     halves = []
     for part in (stride < k, stride >= k):

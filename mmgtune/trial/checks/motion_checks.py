@@ -139,10 +139,10 @@ def _jumps(trial: Trial, where: str) -> list[Finding]:
 
 def _spikes(trial: Trial, where: str) -> list[Finding]:
     found = []
-    for name, values in trial.columns.items():
+    for name in trial.columns:
         if name not in MOTION and name not in INPUTS:
             continue
-        rows = spikes(values, share=0.02 if name in MOTION else 0.2)
+        rows = spikes_of(trial, name)
         if len(rows):
             found.append(
                 Finding(
@@ -154,6 +154,14 @@ def _spikes(trial: Trial, where: str) -> list[Finding]:
                 )
             )
     return found
+
+
+def spikes_of(trial: Trial, name: str) -> npt.NDArray[np.intp]:
+    """Spikes of a channel of the motion or an input; several checks pass over them, so a trial keeps its own."""
+    kept: dict[str, npt.NDArray[np.intp]] = trial.__dict__.setdefault("_spikes", {})
+    if name not in kept:
+        kept[name] = spikes(trial.columns[name], share=0.02 if name in MOTION else 0.2)
+    return kept[name]
 
 
 def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
@@ -172,9 +180,11 @@ def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
     low, high = np.nanpercentile(values, [1.0, 99.0])
     least = max(14.8 * np.nanmedian(off), share * (high - low), 0.02 * (np.nanmax(values) - np.nanmin(values)))
     # A sample between its neighbours is on the way from one to the other, however fast.
-    beyond = (here - values[1:-3]) * (here - values[3:-1]) > 0.0
+    far = (off > least) & ((here - values[1:-3]) * (here - values[3:-1]) > 0.0)
+    if not far.any():
+        return np.zeros(0, dtype=np.intp)
     apart = np.minimum(np.abs(here - values[1:-3]), np.abs(here - values[3:-1]))
-    return np.flatnonzero((off > least) & beyond & (apart > 3.0 * _digit(values))) + 2
+    return np.flatnonzero(far & (apart > 3.0 * _digit(values))) + 2
 
 
 def _digit(values: FloatArray) -> float:
@@ -217,8 +227,7 @@ def _yaw(trial: Trial, where: str) -> list[Finding]:
             )
         ]
     yaw = np.abs(trial.r[np.isfinite(trial.r)])
-    misfits = position_misfits(trial.columns)
-    if np.percentile(yaw, 95.0) > LARGEST_YAW_RATE and misfits.get(Reading.AS_ASKED, 1.0) > FITS:
+    if np.percentile(yaw, 95.0) > LARGEST_YAW_RATE and _misses(trial, 1.0) > FITS:
         return [
             Finding(
                 "warning",
@@ -231,11 +240,16 @@ def _yaw(trial: Trial, where: str) -> list[Finding]:
     return []
 
 
+def _misses(trial: Trial, unknown: float, longer: int = 1) -> float:
+    """How badly velocities explain positions as they stand, ``unknown`` where the ship hardly moves."""
+    return position_misfits(trial.columns, longer, (Reading.AS_ASKED,)).get(Reading.AS_ASKED, unknown)
+
+
 def _positions(trial: Trial, where: str) -> list[Finding]:
-    misfits = position_misfits(trial.columns)
-    asked = misfits.pop(Reading.AS_ASKED, 0.0)
-    if asked <= FITS:
+    if _misses(trial, 0.0) <= FITS:
         return []
+    misfits = position_misfits(trial.columns)
+    asked = misfits.pop(Reading.AS_ASKED)
     # Small angles in degrees read as earth axes do; headings surely in degrees make a trial unusable.
     del misfits[Reading.IN_DEGREES]
     enough = min(FITS, 0.5 * asked)
@@ -245,7 +259,7 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
         place = f"if they are of a point about {aboard(lever.x, lever.y, 2)} of midship"
         fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
     fitting.sort()
-    if not fitting and position_misfits(trial.columns, WANDER).get(Reading.AS_ASKED, 0.0) <= FITS:
+    if not fitting and _misses(trial, 0.0, WANDER) <= FITS:
         return []
     fits = "they fit " + ", or ".join(words for _, words, _ in fitting)
     fix = "; or ".join(fix for _, _, fix in fitting)

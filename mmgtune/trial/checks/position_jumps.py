@@ -10,7 +10,7 @@ from ..gaps import bridged
 from ..kinematics import halfway, middle
 from ..model import Trial
 from .finding import Finding
-from .motion_checks import spikes
+from .motion_checks import spikes_of
 
 SPAN = 12.0
 """Time [s] on each side of a step over which the track has to lie on one line and then on another."""
@@ -95,8 +95,8 @@ def _without_way(trial: Trial, n: int) -> list[FloatArray] | None:
     if ways is None:
         return None
     left = [
-        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(way * np.diff(trial.t))])
-        for position, way in zip((trial.x, trial.y), ways.T, strict=True)
+        _without_spikes(trial, name) - np.concatenate([[0.0], np.cumsum(way * np.diff(trial.t))])
+        for name, way in zip(("x", "y"), ways.T, strict=True)
     ]
     for first, last in runs_of_true(np.isnan(made[0])):
         for one in left if last - first > n else ():
@@ -124,9 +124,9 @@ def _stays(around: list[FloatArray], least: float) -> bool:
     return True
 
 
-def _without_spikes(values: FloatArray) -> FloatArray:
+def _without_spikes(trial: Trial, name: str) -> FloatArray:
     """A channel with single samples off the others put between their neighbours: they are told of as spikes."""
-    rows = spikes(values, share=0.02)
+    values, rows = trial.columns[name], spikes_of(trial, name)
     smooth = values.copy()
     smooth[rows] = 0.5 * (values[rows - 1] + values[rows + 1])
     return smooth
