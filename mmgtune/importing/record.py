@@ -22,6 +22,13 @@ from .maps.quantities import AGAINST, known_quantity, meaning
 
 PAIRS = (("latitude", "longitude"), ("x", "y"), ("u", "v"))
 """Quantities that are read together."""
+POSITIONS = (("latitude", "longitude"), ("x", "y"))
+FEWEST_UPDATES, MOST_REPEATS = 20, 20
+"""Updates of a position that show how often it comes, and rows up to which it may be written over and over."""
+REGULAR = 0.9
+"""Share of updates that come as often as the others, from which a position is held between them."""
+BEYOND = 5.0
+"""Steps of print that a ship moves from one update to the next, at least."""
 FEW = 4
 """Significant digits up to which a column is looked at as to whether they suffice."""
 TOGETHER = 0.1
@@ -212,7 +219,41 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
         )
     if problems:
         raise LogError(*problems)
+    for pair in POSITIONS:
+        if set(pair) <= set(series) and (updated := updates_of(*(series[name] for name in pair))) is not None:
+            every = float(np.median(np.diff(series[pair[0]].t[updated])))
+            series |= {name: series[name].at(updated) for name in pair}
+            told = f"positions stand still between updates, {every:.3g} s apart"
+            notes.append(f"{told}: the first row of each is kept, as the ship moves on meanwhile")
     return Record(table.path, as_logged(series), notes=notes, coarse=coarse)
+
+
+def updates_of(north: Series, east: Series) -> BoolArray | None:
+    """Rows (n_samples,) in which a position is new, of a log that writes each several times over until the next comes;
+    None of any other.
+
+    They come at equal distances, and steps are far beyond those in which positions are printed: few digits repeat too.
+    Where the ship lies still a row is kept as often.
+    """
+    if north.printed is not None or east.printed is not None:
+        return None
+    known = np.isfinite(north.values) & np.isfinite(east.values)
+    new = np.zeros(len(known), dtype=bool)
+    new[1:] = known[1:] & known[:-1] & ((np.diff(north.values) != 0.0) | (np.diff(east.values) != 0.0))
+    rows = np.flatnonzero(new)
+    if len(rows) < FEWEST_UPDATES:
+        return None
+    apart = np.diff(rows)
+    step = int(np.median(apart))
+    if not 2 <= step <= MOST_REPEATS or np.mean(np.abs(apart - step) <= 1) < REGULAR:
+        return None
+    for values in (north.values, east.values):
+        steps, digits = print_step(values[np.isfinite(values)])
+        moved = float(np.median(np.abs(np.diff(values[rows]))))
+        if digits and moved < BEYOND * float(np.nanmax(steps)) and moved > 0.0:
+            return None
+    last = np.maximum.accumulate(np.where(new, np.arange(len(new)), rows[0] % step - step))
+    return np.asarray(~known | ((np.arange(len(new)) - last) % step == 0))
 
 
 def as_logged(series: Mapping[str, Series]) -> dict[str, Series]:

@@ -12,7 +12,7 @@ import tomlkit
 from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.proposing.sampling import heading, sample_of
-from mmgtune.importing.proposing.words import quantity_named, unit_named
+from mmgtune.importing.proposing.words import quantity_named, side_named, unit_named
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG, KNOT
@@ -882,3 +882,39 @@ def test_the_map_of_the_tests_is_found_again(tmp_path):
         other = found.sources[name]
         assert (other.column, other.unit) == (source.column, source.unit)
         assert source.positive in (None, other.positive)
+
+
+@pytest.mark.parametrize(
+    ("name", "side"),
+    [
+        ("Rudder angle (P+)", "port"), ("Rudder [+ to stbd]", "starboard"), ("Ruder (BB positiv)", "port"),
+        ("delta, positive starboard", "starboard"), ("Rudder port pos [deg]", ""), ("rudder_port [deg]", ""),
+        ("rudder +/- 35", ""),
+    ],
+)  # fmt: skip
+def test_names_may_say_to_which_side_a_rudder_is_positive(name, side):
+    assert side_named(name) == side
+
+
+def test_a_side_that_only_the_name_says_is_likely(tmp_path):
+    """One turn in a log of five rows a second tells too little: the side was asked for, though the header says it."""
+    trial, t = suzaku("turn_p35"), np.arange(0.0, 480.0, 0.2)
+    columns = {name: np.interp(t, trial.t, values) for name, values in logged(trial).items() if name != "rudder"}
+    columns["heading"] = np.mod(np.interp(t, trial.t, trial.psi) / DEG, 360.0)
+    columns["Rudder (P+)"] = -np.interp(t, trial.t, trial.delta) / DEG
+    guess = propose_map(write_csv(tmp_path / "log.csv", columns)).guesses["delta"]
+    assert guess.keys["positive"] == "port"
+    assert guess.confidence == "likely" or "positive to port in 1 of 1 logs" in guess.evidence
+
+
+def test_a_speed_along_the_track_is_not_off_by_what_drift_takes_of_it(tmp_path):
+    trial = suzaku("turn_m20")
+    columns = {"time [s]": trial.t, "north [m]": trial.x, "east [m]": trial.y, "heading [deg]": trial.psi / DEG}
+    columns |= {
+        "SOG [kn]": np.hypot(trial.u, trial.v_m) / KNOT,
+        "rpm": 60.0 * trial.n,
+        "rudder [deg]": trial.delta / DEG,
+    }
+    guess = propose_map(write_csv(tmp_path / "log.csv", columns)).guesses["sog"]
+    assert guess.confidence == "sure"
+    assert "off by a factor" not in " ".join(guess.evidence)

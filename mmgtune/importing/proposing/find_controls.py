@@ -13,7 +13,7 @@ from .finder import Finder
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
 from .orders import rudders, shafts
-from .words import LOG_SPEED, ORDER, OTHER, ROLL, turns
+from .words import LOG_SPEED, ORDER, OTHER, ROLL, side_named, turns
 
 WAY = (0.01, 0.04)
 """Ship lengths that ships make with each turn of the propeller."""
@@ -97,6 +97,13 @@ def _rudder(
     elif max(starboard, port) > 4 * min(starboard, port):
         own["positive"] = "starboard" if starboard > port else "port"
         words.append(f"positive to {own['positive']} in {max(starboard, port)} of {len(find.looks)} logs")
+        if side_named(find.first.names[column]) not in ("", own["positive"]):
+            words.append(f"although its name says {side_named(find.first.names[column])}")
+            confidence = LIKELY
+    elif side := side_named(find.first.names[column]):
+        own["positive"] = side
+        words.append(f"its name says that it is positive to {side}")
+        confidence = LIKELY
     else:
         own["positive"] = f'{MARK} "starboard" or "port": to which side does a positive angle turn the ship?'
         confidence = ASKED

@@ -215,7 +215,9 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
         bool(told) and float(np.median([one[1] for one in told])) > 0.6 and current > 0.02 * find.looks[0].usual_speed
     )
     of_log = find.said[column] == LOG_SPEED
-    factor = _factor(find, column, unit)
+    along = not minus and not of_log and _along_the_track(find, column, unit)
+    # What nothing says to be along the track may be that ahead times a factor, which a turn alone does not tell apart.
+    factor = _factor(find, column, unit, along and find.said[column] == "sog")
     # A current that no turn shows may be as large as what a log is off by.
     if flows or (of_log and not told and abs(factor - 1.0) > FACTOR):
         why = (
@@ -235,7 +237,7 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
     if off:
         more = f"{100.0 * abs(factor - 1.0):.2g} % {'more' if factor > 1.0 else 'less'}"
         words += f"; it says {more} than the positions throughout: is it off by a factor?"
-    if not minus and not of_log and _along_the_track(find, column, unit):
+    if along:
         said = f"it is the speed along the track within {100.0 * miss:.2g} %, in {unit}{words}"
         find.add(Guess("sog", column, own, (said, "its direction is that of the positions"), confidence))
         return
@@ -245,12 +247,14 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
     find.add(Guess("u", column, own, (said,), confidence))
 
 
-def _factor(find: Finder, column: int, unit: str) -> float:
-    """How many times the speed ahead of the positions a column says, usually."""
+def _factor(find: Finder, column: int, unit: str, along: bool) -> float:
+    """How many times the speed of the positions, ahead or ``along`` the track, a column says, usually."""
     ratios = []
     for look in find.looks:
         with np.errstate(all="ignore"):
-            ratio = np.abs(look.mean(column)) * units.factors("m/s")[unit] / np.abs(look.ahead)
+            # In a turn a ship drifts, and her speed along the track is more than that ahead.
+            of = look.speed if along else np.abs(look.ahead)
+            ratio = np.abs(look.mean(column)) * units.factors("m/s")[unit] / of
         ratios.append(ratio[np.isfinite(ratio) & (np.abs(look.ahead) > 0.5 * look.usual_speed)])
     every = np.concatenate(ratios) if ratios else np.empty(0)
     return float(np.median(every)) if len(every) else 1.0

@@ -164,8 +164,10 @@ _ENGINE = re.compile(
 
 _UNITS = {
     "knoten": "kn", "kt": "kn", "kts": "kn", "kn": "kn", "knots": "kn", "noeuds": "kn", "nudos": "kn", "nodi": "kn",
-    "knopen": "kn", "knop": "kn", "节": "kn", "ノット": "kn", "노트": "kn",
+    "nd": "kn", "nds": "kn", "nœuds": "kn", "noeud": "kn", "knopen": "kn", "knop": "kn", "节": "kn", "ノット": "kn",
+    "노트": "kn",
     "kmh": "km/h", "mps": "m/s", "m/sec": "m/s", "ms-1": "m/s",
+    "deg t": "deg", "degt": "deg", "deg true": "deg", "°t": "deg", "deg m": "deg", "deg mag": "deg",
     "deg": "deg", "degs": "deg", "grad": "deg", "degres": "deg", "degre": "deg", "grados": "deg", "gradi": "deg",
     "graden": "deg", "gr": "deg", "º": "deg", "°": "deg", "度": "deg", "도": "deg", "rad": "rad", "radians": "rad",
     "degps": "deg/s", "deg/sec": "deg/s", "dps": "deg/s", "grad/s": "deg/s", "°/sec": "deg/s", "º/s": "deg/s",
@@ -247,6 +249,26 @@ def ordered(name: str) -> str:
     if re.search(_TELEGRAPH, text):
         return "n"
     return next((quantity for quantity, pattern in _PATTERNS if quantity in _DRIVES and pattern.search(text)), "")
+
+
+_TO_PORT, _TO_STARBOARD = (
+    r"(?:port|ps?|bb|babord|backbord|bakboord|babor|left|links)",
+    r"(?:st(?:a?r?)b(?:oar)?d|sb|stb|s|tribord|steuerbord|stuurboord|estribor|right|rechts)",
+)
+_PLUS = r"(?:\+(?:ve)?|positive?|positiv|positief|positivo)"
+
+
+def side_named(name: str) -> str:
+    """The side to which a name says that a column is positive, as "Rudder (P+)" and "helm [+ to stbd]" do; else ""."""
+    text = name[:200].lower()
+    sides = {"port": _TO_PORT, "starboard": _TO_STARBOARD}
+    found = [
+        side
+        for side, words in sides.items()
+        if re.search(rf"\b(?:{words})\s*(?:is\s+|=\s*)?{_PLUS}(?!\w)", text)
+        or re.search(rf"(?<!\w){_PLUS}\s*[=:]?\s*(?:to\s+)?(?:{words})\b", text)
+    ]
+    return found[0] if len(found) == 1 else ""
 
 
 @lru_cache(maxsize=4096)
