@@ -674,6 +674,16 @@ def test_what_is_little_beside_noise_may_be_chance(one, chance):
 
 
 @pytest.mark.parametrize(
+    ("chance", "unclear", "explained", "nothing"),
+    [(True, "why", 0.5, True), (False, "why", 0.05, True), (False, "why", 0.5, False), (False, "", 0.05, False)],
+)
+def test_what_is_not_believed_and_removes_nothing_leaves_what_there_was(chance, unclear, explained, nothing):
+    """Coarse inputs excused all that was left, and "something is wrong: an error with 0 % of the noise is left"."""
+    one = belief_with(causes=[SimpleNamespace()], is_chance=chance, unclear=unclear, explained_share=explained)
+    assert one.is_next_to_nothing == nothing
+
+
+@pytest.mark.parametrize(
     ("explained", "held_out", "sized", "doubt", "leads"),
     [
         (0.97, 0.9, True, None, True),

@@ -98,7 +98,7 @@ class Judge:
                 result, found = other, fewer  # as little is believed, and it takes less
             if doubted is not None:
                 result = replace(result, leading=Leading.of(result, other))
-        if result.is_chance and self._may_be_noise(result) and not self.hooks.stop():
+        if result.is_next_to_nothing and self._may_be_noise(result) and not self.hooks.stop():
             alone = with_only(self.bench, found, [])
             other = self._judged(alone, [])
             result, found = (other, alone) if other.verdict == "none" else (result, found)

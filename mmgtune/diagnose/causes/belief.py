@@ -210,6 +210,11 @@ class Belief:
         return nothing and bool(self.unclear)
 
     @property
+    def is_next_to_nothing(self) -> bool:
+        """Whether causes that are not believed may be chance, or remove nothing worth speaking of."""
+        return self.is_chance or bool(self.unclear and not self.tells_a_part)
+
+    @property
     def _told_by_one_log(self) -> bool:
         """Whether at most one of the causes is more than an error in the log of a single state, which shows in no other
         and is told by itself."""
