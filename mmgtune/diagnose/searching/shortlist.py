@@ -22,7 +22,8 @@ ANYHOW = 4
 """Hypotheses of the best scores that are refitted whatever first steps promise."""
 
 SURE = 2
-"""Hypotheses that are refitted anyhow, however little they explain: those whose scores chance brings least of."""
+"""Hypotheses that are refitted beside a cause, however little they explain: those whose scores chance brings least of.
+Before one is known, what stands for a small part of an error that none of the others tells would be taken for it."""
 
 LIKELY = 9
 """Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
@@ -62,7 +63,8 @@ class Shortlist:
             strong = self.refitter.strong
             chosen = self._likely(named) if strong or self.refitter.given else named[:REFITTED]
             chosen += [] if strong else self._well_formed(named, chosen)
-            sure = sorted(named, key=lambda score: -score.evidence)[:SURE]
+            beside = any(name.startswith("effects.") for name in self.refitter.point.names)
+            sure = sorted(named, key=lambda score: -score.evidence)[: SURE if beside else 0]
             chosen += [score for score in sure if score not in chosen]
             chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]
             if not strong:
