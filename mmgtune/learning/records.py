@@ -49,16 +49,7 @@ def of_networks(result: Learned) -> dict[str, Any]:
         "members": [one.to_dict() for one in result.members],
         "learned_from": [trial.id for trial in task.split.learn],
         "chosen_by": [trial.id for trial in task.split.choose],
-        "held_out": [trial.id for trial in task.test],
-        "scores": {role: summary(scores) for role, scores in result.scores.items()},
-        "drawn": drawn(
-            [NetworkPredictor(result.network)], task.by_role[result.role], task.options.restart, result.role
-        ),
-        "options": task.options.to_dict(),
-        "warnings": list(result.warnings),
-        "provenance": result.provenance,
-        "interrupted": result.interrupted,
-        "wall_s": result.wall_s,
+        **_outcome(result, NetworkPredictor(result.network)),
     }
 
 
@@ -117,11 +108,17 @@ def of_ensemble(result: LearnedEnsemble) -> dict[str, Any]:
         "members": [one.to_dict() for one in result.members],
         "learned_from": [trial.id for trial in task.split.learn],
         "watched_by": [trial.id for trial in task.split.choose],
+        **_outcome(result, EnsemblePredictor(result.ensemble)),
+    }
+
+
+def _outcome(result: Learned | LearnedEnsemble, predictor: Predictor) -> dict[str, Any]:
+    """How well what was trained does, and what it was trained with."""
+    task = result.task
+    return {
         "held_out": [trial.id for trial in task.test],
         "scores": {role: summary(scores) for role, scores in result.scores.items()},
-        "drawn": drawn(
-            [EnsemblePredictor(result.ensemble)], task.by_role[result.role], task.options.restart, result.role
-        ),
+        "drawn": drawn([predictor], task.by_role[result.role], task.options.restart, result.role),
         "options": task.options.to_dict(),
         "warnings": list(result.warnings),
         "provenance": result.provenance,

@@ -123,7 +123,7 @@ class Belief:
         not_told = f"how large {listed(unsized)} would be is not told, if anything at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
-        if n_terms([tag for tag, _ in self.contributions]) < 2:
+        if self._n_terms < 2:
             if self.differs_by_run and self._faint and self.gain.surely_removed < AT_ALL:
                 return NEXT_TO_NOTHING
             if self.gain.share_removed >= TOLD:
@@ -165,9 +165,14 @@ class Belief:
         return untold or bool(self.unclear) or self._mostly_left
 
     @property
+    def _n_terms(self) -> int:
+        """Terms of the sum of all causes."""
+        return n_terms([tag for tag, _ in self.contributions])
+
+    @property
     def is_beyond_all(self) -> bool:
         """Whether several terms are needed and not believed: more trials of an unknown effect take more of them."""
-        return (self.more or n_terms([tag for tag, _ in self.contributions]) >= TOO_MANY - 1) and bool(self.unclear)
+        return (self.more or self._n_terms >= TOO_MANY - 1) and bool(self.unclear)
 
     @property
     def _told_by_none(self) -> bool:

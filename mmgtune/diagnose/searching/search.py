@@ -103,6 +103,11 @@ class Found:
     more: bool = False
     left_out: list[Refit] = field(default_factory=list)
 
+    @property
+    def n_terms(self) -> int:
+        """Terms of the sum of the causes."""
+        return n_terms([cause.tag for cause in self.causes])
+
 
 def search(
     bench: Workbench,
@@ -126,8 +131,7 @@ def search(
     dropped: list[Hypothesis] = []
     once: list[Hypothesis] = []
     while not bench.stop():
-        n = n_terms([cause.tag for cause in found.causes])
-        found.more = n >= TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
+        found.more = found.n_terms >= TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
         if found.more:
             break
         number = len(found.causes) + 1
@@ -176,7 +180,7 @@ def search(
         _drop_superfluous(bench, found, found.causes[:-1])
     if not bench.stop():
         _make_plain(bench, found, hypotheses)
-    found.more = found.more and n_terms([cause.tag for cause in found.causes]) >= TOO_MANY - 1
+    found.more = found.more and found.n_terms >= TOO_MANY - 1
     return found
 
 

@@ -18,7 +18,7 @@ from ...phrases import listed
 from ..cells.numerals import holds_numbers
 from ..maps.mapping import LogMap
 from .in_memory import table_of
-from .joining import Apart, Part, joined
+from .joining import Apart, Joined, Part, joined
 from .matlab import Other, Value, variables
 from .table import Table
 
@@ -139,7 +139,7 @@ def _of_other_times(columns: Mapping[str, FloatArray | list[str]]) -> list[str]:
     times = {
         name.rpartition(".")[0]: value
         for name, value in columns.items()
-        if isinstance(value, np.ndarray) and name.rpartition(".")[2].lower() in TIMES
+        if isinstance(value, np.ndarray) and _is_time(name)
     }
     if len(times) < 2:
         return []
@@ -177,17 +177,17 @@ def _with_timed(
     own = [name for name in found if name == time or not (_is_time(name) and _same(found[name], found[time]))]
     own.remove(time)
     taken = [_part(time.rpartition(".")[0] or time, time, own, found)]
+    made: Joined | None = None
     for within, (clock, names) in parts.items():
         try:
-            joined([*taken, one := _part(within, clock, names, arrays)], path)
+            made = joined([*taken, one := _part(within, clock, names, arrays)], path)
             taken.append(one)
         except Apart as why:
             apart[within] = str(why)
-    if len(taken) > 1:
-        made = joined(taken, path)
+    if made is not None:
         notes.append(made.note)
         found = {time: _plain(made.times), **dict(zip(made.names, map(_plain, made.columns), strict=True))}
-    return found, apart, len(taken) > 1
+    return found, apart, made is not None
 
 
 def _is_time(name: str) -> bool:
