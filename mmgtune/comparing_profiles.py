@@ -11,6 +11,7 @@ import numpy as np
 
 from .arguments import ShipGiven, ship_of
 from .arrays import FloatArray
+from .components import effect_tag
 from .displayed import Displayed
 from .errors import OptionError, Problem
 from .motions import breakdown
@@ -131,7 +132,7 @@ def compare_profiles(a: ShipGiven, b: ShipGiven) -> Comparison:
 def _coefficients(a: ShipProfile, b: ShipProfile) -> list[dict[str, Any]]:
     """Every number either has; None where the other has no such."""
     rows = []
-    numbers = [{name: ship.value(name) for name in ship.names() if not name.startswith("effects.")} for ship in (a, b)]
+    numbers = [{name: ship.value(name) for name in ship.names() if not effect_tag(name)} for ship in (a, b)]
     for name in dict.fromkeys((*numbers[0], *numbers[1])):
         ship = a if name in numbers[0] else b
         kind, _, symbol = name.rpartition(".")

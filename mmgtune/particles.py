@@ -16,7 +16,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import Integrator
-from .components import split_name
+from .components import effect_tag, split_name
 from .documents import RepeatedKey, parsed
 from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError, must_be_a, reason
@@ -100,10 +100,9 @@ class Particles:
         """The most probable ship in what the profile had around her before any trial was seen."""
         before: dict[str, dict[str, float]] = {}
         for name in self.of_the_day():
-            kind, symbol = split_name(name)
             value = self.profile.coefficient(name).pre_determined
             if value is not None:
-                before.setdefault(kind.partition(".")[2], {})[symbol] = float(value)
+                before.setdefault(effect_tag(name), {})[split_name(name)[1]] = float(value)
         return with_effects(self.profile, before, "as before the trials") if before else self.profile
 
 

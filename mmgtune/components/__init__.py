@@ -6,7 +6,7 @@ package.  A new hull, wake, propeller or rudder is one new file there and one en
 
 from .arrangements import ARRANGEMENTS
 from .component import AT_LEAST_0, AT_MOST_0, Arrangement, Component, Field
-from .registry import COMPONENTS, KINDS, UNTAGGED, find, find_arrangement, split_name, tags
+from .registry import COMPONENTS, KINDS, UNTAGGED, effect_tag, find, find_arrangement, split_name, tags
 from .ship import ABOVE_WATER, SHIP
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "Arrangement",
     "Component",
     "Field",
+    "effect_tag",
     "find",
     "find_arrangement",
     "split_name",

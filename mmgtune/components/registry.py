@@ -40,6 +40,13 @@ def split_name(name: str) -> tuple[str, str]:
     return section, symbol
 
 
+def effect_tag(name: str) -> str:
+    """Tag of the effect that a section or coefficient is of: "current" of "effects.current.north"; "" of one of the
+    ship's."""
+    kind, _, rest = name.partition(".")
+    return rest.partition(".")[0] if kind == "effects" else ""
+
+
 def tags(kind: str) -> tuple[str, ...]:
     """The tags a profile may name for one kind of component."""
     return tuple(component.tag for component in COMPONENTS if component.kind == kind)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits
+from ..components import effect_tag
 from ..documents import parsed
 from ..errors import OptionError, Problem, reason
 from ..files import write_text
@@ -27,7 +28,7 @@ def classes_of(out: Path, rows: Sequence[Mapping[str, Any]]) -> list[SisterClass
         if not row["sisters"] or row["command"] != "fit" or row["answer"] == "failed" or not path.is_file():
             continue
         one = _told(path)
-        one = one.apart_from([name for name in one.names if name.startswith("effects.")])
+        one = one.apart_from([name for name in one.names if effect_tag(name)])
         ships = told.setdefault(row["sisters"], {})
         ships[row["ship"]] = ships[row["ship"]].and_of(one) if row["ship"] in ships else one
     return [SisterClass(name, ships) for name, ships in sorted(told.items()) if len(ships) >= FEWEST]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..components import effect_tag
 from ..effects import find_effect
 from ..units import shown_in
 from .changes import Course, course
@@ -82,10 +83,9 @@ def called(name: str) -> tuple[str, str, str, float]:
     """Effect, words, unit and factor to it of a quantity."""
     if name == OFF_TRACK:
         return "", "distance off track of the model as given", "m", 1.0
-    section, _, symbol = name.rpartition(".")
-    if not section.startswith("effects."):
+    tag, symbol = effect_tag(name), name.rpartition(".")[2]
+    if not tag:
         return "", name, "", 1.0
-    tag = section.partition(".")[2]
     effect = find_effect(tag)
     if effect is None:
         return tag, name, "", 1.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
-from ..components import split_name
+from ..components import effect_tag, split_name
 from ..effects import Effect, FilterEffect, Parameter, Scale, SensorEffect, effects
 from ..effects.hull_term import symbol
 from ..fitting.box import parameter_of
@@ -97,7 +97,7 @@ def _coefficients(followed: Followed, mass: FloatArray) -> Iterator[Candidate]:
     """Derivatives by coefficients of the profile."""
     model = followed.model
     hull = [name for name in model.rows if name.startswith("hull.")]
-    present = [name for name in model.rows if name.startswith("effects.") and parameter_of(model, name)]
+    present = [name for name in model.rows if effect_tag(name) and parameter_of(model, name)]
     for name in dict.fromkeys((*tuned_names(model.profile), *model.profile.targets, *hull, *present)):
         if name not in model.rows or not np.isfinite(now := model.base[model.rows[name]]):
             continue

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
-from ..components import split_name
+from ..components import effect_tag
 from ..displayed import Brief
 from ..effects import Effect, Parameter, discrepancy, find_effect
 from ..errors import Problem, ProfileError
@@ -128,7 +128,7 @@ def make_room(profile: ShipProfile, *, size: float = 1.0, without: tuple[str, ..
 
 def room_of(particles: Particles) -> Room:
     """The room that particles were drawn in.  Raises ProfileError for particles that ``posterior`` did not make."""
-    there = {split_name(name)[0].partition(".")[2] for name in particles.names if name.startswith("effects.")}
+    there = {tag for name in particles.names if (tag := effect_tag(name))}
     said = particles.facts.get("room", 1.0)
     size = float(said) if isinstance(said, (int, float)) and said > 0.0 else 1.0
     room = make_room(particles.profile, size=size, without=tuple(tag for tag in IN_ROOM if tag not in there))
@@ -201,5 +201,4 @@ def _deviation(effect: Effect, symbol: str, parameter: Parameter, profile: ShipP
 
 def tags_of(room: Room) -> list[str]:
     """Effects there is room for, in order."""
-    kinds = dict.fromkeys(split_name(name)[0] for name in room.names)
-    return [kind.partition(".")[2] for kind in kinds if kind.startswith("effects.")]
+    return [tag for tag in dict.fromkeys(map(effect_tag, room.names)) if tag]

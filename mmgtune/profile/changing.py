@@ -9,7 +9,7 @@ from types import NoneType
 from typing import Any
 
 from ..arrays import numbers_of
-from ..components import split_name
+from ..components import effect_tag, split_name
 from ..effects import Effect, Parameter, Scale, Visited, effects
 from ..errors import Problem, ProfileError, among, brief, must_be_a
 from ..physics.constants import GRAVITY
@@ -134,8 +134,8 @@ def with_effects(
     must_be_a(profile, ShipProfile, "profile")
     must_be_a(values, Mapping, "values")
     by_tag = {effect.tag: effect for effect in effects()}
-    sections = {kind: section for kind, section in profile.sections.items() if not kind.startswith("effects.")}
-    given = {kind.partition(".")[2]: section for kind, section in profile.sections.items() if "." in kind}
+    sections = {kind: section for kind, section in profile.sections.items() if not effect_tag(kind)}
+    given = {tag: section for kind, section in profile.sections.items() if (tag := effect_tag(kind))}
     for tag, parameters in values.items():
         if tag not in by_tag:
             raise ProfileError(Problem(f"no effect '{tag}'", "values", **among(tag, list(by_tag))))

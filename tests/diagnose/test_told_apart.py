@@ -9,10 +9,12 @@ from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.answering.separate import Foretold, Suggestion, apart, holds, menu, suggest
 from mmgtune.diagnose.bench.workbench import make_workbench
 from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.motions import as_trial
 from mmgtune.motions import simulate_trials as sailed
-from mmgtune.orders import run_manoeuvre
+from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials
+from mmgtune.units import DEG
 from tests.diagnose.sensors import logged
 from tests.hidden.cases import Case, null
 from tests.hidden.plant import WHITE, simulate, write
@@ -69,6 +71,29 @@ def test_a_stall_that_leaves_the_force_some_of_its_slope_is_no_gain_of_the_rudde
     assert [cause.tag for cause in result.causes] == ["rudder-stall"]
     found = result.to_dict()["causes"][0]["parameters"]["angle"]
     assert found["ci95"][0] < 0.3 < found["ci95"][1]
+
+
+@pytest.mark.long
+def test_at_one_rpm_a_side_force_of_the_revolutions_and_a_steady_force_are_a_group():
+    """Beside a late position log: each is tried in the place of the other from the ship as it was found."""
+    profile, rng = load_profile("kvlcc2"), np.random.default_rng(3)
+    hidden = {"propeller-walk": {"share": 0.04, "revolutions": 1.0}, "position-latency": {"seconds": 6.0}}
+    ship = with_effects(profile, hidden, "made")
+    orders = {
+        "turn_p35": TurningOrder(35.0 * DEG),
+        "turn_m20": TurningOrder(-20.0 * DEG),
+        "zigzag_20": ZigzagOrder(20.0 * DEG, 20.0 * DEG),
+        "zigzag_m10": ZigzagOrder(-10.0 * DEG, 10.0 * DEG),
+    }
+    motions = [
+        run_manoeuvre(ship, order, id=name, longest=1200.0, sample=2.0)
+        for name, order in orders.items()
+    ]
+    made = [logged(as_trial(ship, motion), motion, rng) for motion in motions]
+    asked = ("propeller-walk", "steady-force", "position-latency", "antenna", "clock-offset")
+    result = diagnose(profile, made, DiagnoseOptions(effects=asked))
+    assert {"propeller-walk", "steady-force"} in [set(group) for group in result.groups], result.sentence()
+    assert "position-latency" in [cause.tag for cause in result.causes]
 
 
 @pytest.mark.long

@@ -191,6 +191,21 @@ def test_a_propeller_pushes_the_stern_aside_by_a_share_of_its_thrust(added):
     np.testing.assert_allclose(force, [0.0, 0.05 * thrust, -0.05 * thrust * L / 2.0])
 
 
+@pytest.mark.parametrize("n", [1.7, -1.2])
+def test_a_part_of_that_force_follows_the_revolutions_whatever_the_speed(added, n):
+    def side(u, revolutions):
+        values = {"share": 0.05, "revolutions": revolutions}
+        force, found = added("propeller-walk", values, MOVING._replace(u=u), control=Control(n, 0.3))
+        return force[1], float(np.squeeze(found.propeller.D_P))
+
+    (slow, D_P), (fast, _) = side(1.0, 1.0), side(3.0, 1.0)
+    np.testing.assert_allclose([slow, fast], 0.05 * RHO * n * abs(n) * D_P**4 * 0.2)
+    farther, _ = added("propeller-walk", {"share": 0.05, "ahead": 0.1}, control=Control(n, 0.3))
+    np.testing.assert_allclose(farther[2], (-0.5 + 0.1) * L * farther[1])
+    by_thrust, half = side(1.0, 0.0)[0], side(1.0, 0.5)[0]
+    np.testing.assert_allclose(half, 0.5 * (by_thrust + slow))
+
+
 def test_a_steady_force_is_the_same_at_any_speed_and_heading(added):
     for state in (MOVING, MOVING._replace(u=0.5, psi=2.0), MOVING._replace(u=-1.0, r=0.0)):
         force, _ = added("steady-force", {"side": 3000.0, "moment": -4e4}, state)

@@ -479,11 +479,20 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
     for rival in near:
         if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
             continue
-        other = _with(bench, fewer, rival, hopeless_beside(bench, found.final.chi2))
-        rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
-        if not best.beats(rival):
-            rivals.setdefault(rival.hypothesis.tag, rival)
+        for start in (found.final, fewer):  # a ship tuned to nothing in its place may be far off
+            other = _with(bench, _where(fewer, start), rival, hopeless_beside(bench, found.final.chi2))
+            one = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
+            if not best.beats(one):
+                rivals.setdefault(one.hypothesis.tag, one)
+                break
     return list(rivals.values())
+
+
+def _where(point: Point, there: Point) -> Point:
+    """A point at the values that what is free in it has at another, where it is free there too."""
+    values = dict(zip(there.names, there.unit, strict=True))
+    unit = np.array([values.get(name, z) for name, z in zip(point.names, point.unit, strict=True)])
+    return replace(point, unit=unit, offsets=there.offsets)
 
 
 def _is_of(step: Step, cause: Hypothesis) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import FloatArray
+from ...components import effect_tag
 from ..bench.workbench import Point
 from ..signatures.foretelling import Foretelling
 from ..signatures.linear import SMALL, inwards
@@ -63,7 +64,7 @@ class Shortlist:
             strong = self.refitter.strong
             chosen = self._likely(named) if strong or self.refitter.given else named[:REFITTED]
             chosen += [] if strong else self._well_formed(named, chosen)
-            beside = any(name.startswith("effects.") for name in self.refitter.point.names)
+            beside = any(effect_tag(name) for name in self.refitter.point.names)
             sure = sorted(named, key=lambda score: -score.evidence)[: SURE if beside else 0]
             chosen += [score for score in sure if score not in chosen]
             chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]

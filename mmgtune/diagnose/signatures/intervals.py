@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import FloatArray
+from ...components import effect_tag
 from ...fitting.box import base_of, group_of
 from ...units import NORMAL_95
 from ..bench.workbench import Point, Workbench
@@ -43,7 +44,7 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
     From the problem made linear, with targets and initial states re-tuned alongside.  Wider than independent noise
     would have it by what the residuals' own blocks and the inputs' noise show; the form of the model is taken as right.
     """
-    names = tuple(name for name in point.names if name.startswith("effects."))
+    names = tuple(name for name in point.names if effect_tag(name))
     if not names:
         return {}
     R, noise, size = _told(bench, point, names)

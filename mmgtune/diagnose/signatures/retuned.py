@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...components import split_name
+from ...components import effect_tag, split_name
 from ...documents import finite
 from ...phrases import listed
 from ...units import NORMAL_95
@@ -125,7 +125,7 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     of mass, inertia and the hull that the trials contradict."""
     known = [name for name in point.names if name in bench.believed.leeway]
     loose = [name for name in known if name.startswith(WEIGHED) or name in STEERED_BY]
-    names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")] + loose
+    names = [name for name in point.names if name in bench.targets and not effect_tag(name)] + loose
     if not names:
         return []
     inside, spread = covariance(bench, point, at_bounds=True)
