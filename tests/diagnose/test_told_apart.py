@@ -85,10 +85,7 @@ def test_at_one_rpm_a_side_force_of_the_revolutions_and_a_steady_force_are_a_gro
         "zigzag_20": ZigzagOrder(20.0 * DEG, 20.0 * DEG),
         "zigzag_m10": ZigzagOrder(-10.0 * DEG, 10.0 * DEG),
     }
-    motions = [
-        run_manoeuvre(ship, order, id=name, longest=1200.0, sample=2.0)
-        for name, order in orders.items()
-    ]
+    motions = [run_manoeuvre(ship, order, id=name, longest=1200.0, sample=2.0) for name, order in orders.items()]
     made = [logged(as_trial(ship, motion), motion, rng) for motion in motions]
     asked = ("propeller-walk", "steady-force", "position-latency", "antenna", "clock-offset")
     result = diagnose(profile, made, DiagnoseOptions(effects=asked))
