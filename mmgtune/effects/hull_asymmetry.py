@@ -48,6 +48,7 @@ EFFECT = ForceEffect(
         "Y_0": _coefficient("side force without drift and yaw, to starboard", 0.002),
         "N_0": _coefficient("yaw moment without drift and yaw, bow to starboard", 0.0004),
     },
+    akin=("steady-force", "propeller-walk", "propeller-side-force"),
     variants=(("Y_0", "N_0"),),
     sentence=lambda v: (
         "The hull is not alike on both sides, as with a list: it has "

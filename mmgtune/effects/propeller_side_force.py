@@ -51,6 +51,7 @@ EFFECT = CoefficientsEffect(
     function=propeller_side_force,
     cites=(),
     fields={"force": _factor("side force"), "moment": _factor("yaw moment")},
+    akin=("steady-force", "hull-asymmetry"),
     variants=(("force", "moment"),),
     unvisited=unvisited,
     sentence=lambda v: (

@@ -55,8 +55,8 @@ EFFECT = ForceEffect(
         ),
         "revolutions": Parameter(
             "part of that force that follows the revolutions squared instead of the thrust",
-            bounds=lambda _: (-0.5, 1.5),
-            bounds_source="beyond either law by half of the way between them",
+            bounds=lambda _: (-2.0, 1.5),
+            bounds_source="from thrice as steep as the thrust, in its coefficient, to beyond the revolutions alone",
         ),
         "ahead": Parameter(
             "how far ahead of the propeller that force acts over L_pp, as the pressure on the hull about it has it",
@@ -65,7 +65,9 @@ EFFECT = ForceEffect(
         ),
     },
     form={"revolutions": 0.5, "ahead": 0.05},
+    akin=("steady-force", "hull-asymmetry"),
     variants=(("share",),),
+    rough=True,
     of_parts=("propeller",),
     needs=("propeller.k_0",),
     unvisited=unvisited,

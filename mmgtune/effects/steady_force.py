@@ -48,6 +48,7 @@ EFFECT = ForceEffect(
             bounds_source="that of a rudder at about ten degrees",
         ),
     },
+    akin=("hull-asymmetry", "propeller-walk", "propeller-side-force"),
     variants=(("side", "moment"),),
     sentence=lambda v: (
         "A steady "

@@ -189,16 +189,18 @@ class Shortlist:
 
 
 def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[Score]:
-    """Hypotheses that act much like the best fit and whose scores may mislead (the score of a wind is that of a light
-    one); and, where the best has values by group of runs, its special cases."""
+    """Hypotheses that act much like the best fit, or the best with one value for all runs, and whose scores may mislead
+    (the score of a wind is that of a light one); and, where the best has values by group of runs, its special cases."""
     if not fitted:
         return []
-    best = min(fitted, key=lambda one: one[1].chi2)[0].hypothesis
+    ranked = [score.hypothesis for score, _ in sorted(fitted, key=lambda one: one[1].chi2)]
+    best = ranked[0]
+    for_all = next((one for one in ranked if not one.by), best)
     there = {score.hypothesis.names for score, _ in fitted}
     found = []
     for score in order:
         one = score.hypothesis
-        alike = one.tag in best.effect.akin and one.by in ("", best.by)
+        alike = any(one.tag in other.effect.akin and one.by in ("", other.by) for other in (best, for_all))
         special = bool(best.by and one.by) and best.holds(one)
         if (alike or special) and score.power > 0.0 and one.names not in there:
             found.append(score)
