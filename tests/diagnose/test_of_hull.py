@@ -31,10 +31,10 @@ OFF = {
 """Factors on the coefficients of a hull that is known worse than to 5 %."""
 
 
-def diagnosed(folder, hidden, **ship):
+def diagnosed(folder, hidden, asked=("loading", "shallow-water", "gyro-bias"), **ship):
     profile = load_profile("suzaku")
     write(simulate({name: factor * profile.value(name) for name, factor in ship.items()}, hidden, seed=5), folder)
-    return diagnose(profile, load_trials(folder), DiagnoseOptions(effects=("loading", "shallow-water", "gyro-bias")))
+    return diagnose(profile, load_trials(folder), DiagnoseOptions(effects=asked))
 
 
 def test_a_hull_far_off_is_no_loading(tmp_path):
@@ -56,6 +56,31 @@ def test_a_loading_is_no_hull(tmp_path):
     (brought,) = [one for _, one in result.contributions]
     assert 0.0 < brought.of_hull < 0.3
     assert not any("leeway" in note for note in result.warnings)
+
+
+IN_SHALLOW_WATER = {
+    "particulars.m_y_": 1.45,
+    "particulars.J_zz_": 1.3,
+    "hull.R_0": 1.17,
+    "hull.Y_v": 1.45,
+    "hull.Y_r": 1.4,
+    "hull.N_v": 1.35,
+    "hull.N_r": 1.25,
+    "hull.Y_vvv": 1.4,
+    "hull.N_vvv": 1.4,
+}
+"""Factors of formulas other than the program's, at 1.3 draughts."""
+
+
+@pytest.mark.long
+def test_a_ship_with_the_added_mass_of_no_ship_sailed_in_shallow_water(tmp_path):
+    """A hull so far off tells test trials as well, and was "nothing wrong": of the ship and not of the water."""
+    result = diagnosed(tmp_path, {}, ("shallow-water", "gyro-bias"), **IN_SHALLOW_WATER)
+    assert [cause.tag for cause in result.causes] == ["shallow-water"]
+    (brought,) = [one for _, one in result.contributions]
+    assert brought.unlike_any.startswith("added mass in sway (m_y_)")
+    assert "ithout shallow-water" in result.sentence()
+    assert "as no ship has it" in result.sentence()
 
 
 @pytest.mark.parametrize(

@@ -152,6 +152,8 @@ def test_a_hull_that_is_not_the_profile_s_is_told_though_it_is_no_target():
     assert unlike_any([damping]) == far_off([damping]) == in_words([damping]) == ""
     inertia = Retuned("particulars.k_zz_", "radius of gyration", "-", 0.25, 0.4, 0.004, believed=0.05)
     assert "They are no targets: the ship may be loaded otherwise" in weighed([inertia, damping])
+    assert weighed([inertia, damping]).endswith("all of these are larger in shallow water.")
+    assert "shallow" not in weighed([replace(inertia, after=0.15), damping])
     assert unlike_any([damping, inertia]).startswith("radius of gyration")
 
 

@@ -22,7 +22,7 @@ from ..bench.workbench import Point, Workbench
 from ..causes.belief import MOSTLY, TOLD
 from ..causes.by_run import ByRun
 from ..causes.cause import Candidate, Cause, Trace
-from ..causes.contributions import Aside, Contribution, contributions, with_only
+from ..causes.contributions import Aside, Contribution, contributions, unlike_without, with_only
 from ..causes.doubted import Doubted, Leading
 from ..evidence.gathering import error_of, evidence
 from ..evidence.leftover import NOTICED, Leftover, leftover
@@ -99,9 +99,10 @@ class Judge:
             if doubted is not None:
                 result = replace(result, leading=Leading.of(result, other))
         if result.is_next_to_nothing and self._may_be_noise(result) and not self.hooks.stop():
-            alone = with_only(self.bench, found, [])
-            other = self._judged(alone, [])
-            result, found = (other, alone) if other.verdict == "none" else (result, found)
+            least, brought = self._least(found)
+            other = self._judged(least, brought)
+            held = other.names_causes if least.causes else other.verdict == "none"
+            result, found = (other, least) if held else (result, found)
         if result.verdict == "unexplained" and not result.misses_test:
             result = replace(result, whereabouts=error_of(self.bench, found, self.before, result.leftover))
         elif result.verdict != "interrupted":
@@ -116,6 +117,15 @@ class Judge:
         noise of the sensors that fades slowly."""
         shapeless = not self.before.structured and result.chi2[0] < 1.0 + NOTICED
         return shapeless or not self.before.noticed
+
+    def _least(self, found: Found) -> tuple[Found, list[Contribution]]:
+        """Of causes beside which the re-tuned model leaves noise alone none, or the first without which mass or inertia
+        would be what no ship's is, and with which alone they are not; what it brings."""
+        for cause in found.causes if unlike_without(self.bench, found, found.base) else []:
+            alone = with_only(self.bench, found, [cause])
+            if unlike := unlike_without(self.bench, alone, found.base):
+                return alone, [Contribution(1.0, unlike_any=unlike)]
+        return with_only(self.bench, found, []), []
 
     def _without_doubtful(
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]

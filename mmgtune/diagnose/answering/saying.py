@@ -69,7 +69,8 @@ def said(answer: Answer) -> Said:
     if answer.verdict == "none":
         one = _of_none(answer)
         return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
-    return Said(" ".join([apart + _of_causes(answer), *more]))
+    astray = weighed(answer.moved) if answer.causes and answer.verdict != "interrupted" else ""
+    return Said(" ".join([apart + _of_causes(answer), *more]), astray)
 
 
 def _where(answer: Answer) -> str:
@@ -95,7 +96,7 @@ def _of_causes(answer: Answer) -> str:
             f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
         )
     named = _joined(named, clock_rate(answer.causes))
-    gained = f"{named} {_gained(answer, 'it' if len(answer.causes) == 1 else 'them', _where(answer))}"
+    gained = _joined(named, *_brought(answer))
     if answer.gain.form_is_off:
         gained = (
             f"{gained} What is left there is {_times(answer.gain.left)} times the noise of the sensors, more than "
@@ -112,6 +113,18 @@ def _of_causes(answer: Answer) -> str:
         f"{gained} What differs between runs was estimated there from the first {100.0 * answer.gain.first_part:.0f} "
         "% of each run, and the rest was judged; the extended profile leaves it out."
     )
+
+
+def _brought(answer: Answer) -> list[str]:
+    """What the causes remove on held-out trials, and what no ship has that the model would take without one of them."""
+    gained = _gained(answer, "it" if len(answer.causes) == 1 else "them", _where(answer))
+    without = {
+        tag: f"takes {one.unlike_any}, as no ship has it." for tag, one in answer.contributions if one.unlike_any
+    }
+    if without and answer.gain.share_removed <= 0.0:
+        no_worse = f"the model is no worse {_where(answer)}, but"
+        return [f"Re-tuned without {tag}, {no_worse} {takes}" for tag, takes in without.items()]
+    return [gained, *(f"Without {tag} the model {takes}" for tag, takes in without.items())]
 
 
 def _of_none(answer: Answer) -> Said:
@@ -138,14 +151,19 @@ def _of_none(answer: Answer) -> Said:
         )
     if far := moved_in_words(answer.moved):
         said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-        return Said(said, _joined(besides(answer.moved), weighed(answer.moved), few, _fading(answer)))
+        why = _joined(besides(answer.moved), weighed(answer.moved), few, _fading(answer))
+        return Said(said, why, *_in_place(answer))
     far = _joined(far_off(answer.moved), weighed(answer.moved))
     noise = "the noise of the measurements"
     first = f"Nothing is wrong beyond {noise}: the re-tuned model fits these trials, and {none}."
     if far or answer.instead:  # it fits, which is not to say that nothing is wrong
         first = f"The re-tuned model fits these trials to {noise}, and {none}."
-    why = _joined(far, few, _fading(answer))
-    return Said(first, why, answer.instead.sentence, answer.instead.why) if answer.instead else Said(first, why)
+    return Said(first, _joined(far, few, _fading(answer)), *_in_place(answer))
+
+
+def _in_place(answer: Answer) -> tuple[str, str]:
+    """What re-tuning may stand for, and why; nothing where it may not."""
+    return (answer.instead.sentence, answer.instead.why) if answer.instead else ("", "")
 
 
 def _joined(*sentences: str) -> str:

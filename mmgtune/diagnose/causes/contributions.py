@@ -101,7 +101,8 @@ class Contribution:
     beside_runs  whether another cause has such values
     slight   whether it is the only cause, of a size that is not worth reporting, and unnoticed when left out
     moves    share of its size by which another cause would be off, and told wrong, without it
-    keeps_inertia whether without it mass or inertia would have to be what no ship's are, which with it they are not
+    unlike_any what mass or inertia would have to be without it, in words, as no ship has them; "" where they would not,
+             or with it too
     good     as ``share``, of the channels alone that it can change: on others it acts by what is fitted beside it;
              infinite where it tells no more than half of the held-out runs worse; None for ``share``
     sure     whether its size is far from none beside others of exact form, which leave nothing that looks like it
@@ -121,15 +122,15 @@ class Contribution:
     beside_runs: bool = False
     slight: bool = False
     moves: float = 0.0
-    keeps_inertia: bool = False
+    unlike_any: str = ""
     of_hull: float = 0.0
     good: float | None = None
     sure: bool = False
 
     @property
     def like_hull(self) -> bool:
-        """Whether it is not told from a hull further off than believed."""
-        return self.of_hull >= AS_WELL
+        """Whether it is not told from a hull further off than believed, of a mass and inertia that a ship may have."""
+        return self.of_hull >= AS_WELL and not self.unlike_any
 
     @property
     def harmful(self) -> bool:
@@ -178,7 +179,7 @@ class Contribution:
     @property
     def _needed(self) -> bool:
         """Whether another cause, or mass and inertia, would be told wrong without it, or it is surely there."""
-        return self.moves >= MOVES or self.keeps_inertia or self.sure
+        return self.moves >= MOVES or bool(self.unlike_any) or self.sure
 
     @property
     def _shown(self) -> float:
@@ -266,7 +267,9 @@ def set_aside(
     traces: list[Aside] = []
     fewer = _fewer(bench, found)
     brought = _brought(bench, found, fewer, unseen)
-    if unseen.test and len(brought) == 1 and not before.structured:
+    if len(brought) == 1 and (unlike := unlike_without(bench, found, found.base)):
+        brought = [replace(brought[0], unlike_any=unlike)]
+    elif unseen.test and len(brought) == 1 and not before.structured:
         brought = [_alone(found, unseen)]
     if len(brought) == 1 and not before.noticed and size_of(bench, found.final, found.causes[0]) < WORTH:
         brought = [replace(brought[0], slight=True)]
@@ -303,17 +306,27 @@ def _weighed(
         replace(one, of_hull=explained_by_hull(bench, cause, point, found.final.chi2))
         for one, cause, point in zip(brought, found.causes, points, strict=True)
     ]
-    seems = [(one.unnoticed or one.little) and not (one.harmful or one.like_hull) for one in weighed]
+    seems = [(one.unnoticed or one.little) and not one.harmful for one in weighed]
     asked = [k for k, little in enumerate(seems) if fewer and little]
     if not asked:
         return weighed
-    sizes, plausible = estimates(bench, found.final), not unlike_any(retuned(bench, found.final))
+    sizes = estimates(bench, found.final)
     for k in asked:
         moves = _moved(bench, found, found.causes[k], fewer[k], sizes)
-        keeps = plausible and bool(unlike_any(retuned(bench, fewer[k])))
+        unlike = unlike_without(bench, found, fewer[k])
         sure = _is_sure(bench, found, found.causes[k], sizes)
-        weighed[k] = replace(weighed[k], moves=moves, keeps_inertia=keeps, sure=sure)
+        weighed[k] = replace(weighed[k], moves=moves, unlike_any=unlike, sure=sure)
     return weighed
+
+
+def unlike_without(bench: Workbench, found: Found, fewer: Point) -> str:
+    """What mass or inertia would have to be without a cause, in words, as no ship has them; "" where they would not, or
+    with all causes too.
+
+    fewer  the best fit without it
+    """
+    unlike = unlike_any(retuned(bench, fewer))
+    return "" if unlike and unlike_any(retuned(bench, found.final)) else unlike
 
 
 def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[str, Estimate]) -> bool:

@@ -157,6 +157,8 @@ def weighed(moved: Sequence[Retuned]) -> str:
         why.append("the ship may be loaded otherwise than the profile says, or it was worked out otherwise")
     if any(of_hull):
         why.append("her hull may steer otherwise than that of the profile")
+    if any(of_hull) and not all(of_hull) and all((one.change or 0.0) > 0.0 for one in far):
+        why.append("all of these are larger in shallow water")
     return f"The trials ask for {listed([one.words for one in far])}. {they}: {'; '.join(why)}."
 
 
