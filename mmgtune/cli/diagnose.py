@@ -167,7 +167,9 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     rows = []
     for row in result.candidates[:12]:
         J = "" if row.J_test is None else f"{row.J_test:.4g}"
-        rows.append((row.label, f"{row.score:.4g}", f"{row.gain:.4g}", f"{row.p_value:.2g}", J))
+        gain = "not refitted" if row.gain is None else f"{row.gain:.4g}"
+        by_chance = "" if row.p_value is None else f"{row.p_value:.2g}"
+        rows.append((row.label, f"{row.score:.4g}", gain, by_chance, J))
     head, *rest = c.table(("hypothesis", "score", "gain", "by chance", "J test"), rows, spare=(1,))
     lines = [head, "", *rest]
     before, after = result.gain.J

@@ -10,7 +10,7 @@ from ..documents import finite_values
 from ..profile import ShipProfile, tuned, with_effects
 from .answering import saying
 from .answering.verdict import Answer
-from .bench import beliefs, winds
+from .bench import beliefs, wave_groups, winds
 
 SCHEMA = 1
 
@@ -64,7 +64,7 @@ class Diagnosis(Answer):
         ]
         effects = [cause.effect for cause in self.causes if cause.effect is not None]
         held = 0.0 if self.choice is not None else self.options.leeway
-        return [*of_profile, *beliefs.in_words(held, effects), *winds.in_words(effects)]
+        return [*of_profile, *beliefs.in_words(held, effects), *winds.in_words(effects), *wave_groups.in_words(effects)]
 
     def _voyages(self) -> dict[str, Any] | None:
         """What was looked at of voyages, and what differs from one to the next."""

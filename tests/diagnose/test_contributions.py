@@ -480,7 +480,7 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
         load_profile("suzaku"), load_trials(tmp_path), DiagnoseOptions(effects=("rudder-stall", "flap"), leeway=0.0)
     )
     assert result.causes == ()
-    assert all("rudder angles beyond" in one.unvisited for one in result.candidates if one.gain > 10.0)
+    assert all("rudder angles beyond" in one.unvisited for one in result.candidates if (one.gain or 0.0) > 10.0)
     assert result.candidates[0].p_value < 1e-6  # but for that it would have been
     assert result.verdict in ("unexplained", "none")
 

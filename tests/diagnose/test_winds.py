@@ -1,13 +1,14 @@
 """Winds whose force is off the formulas, in gusts: neither hides them, nor passes for something else."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.answering.judging import _deformed
-from mmgtune.diagnose.bench import beliefs, winds
+from mmgtune.diagnose.bench import beliefs, wave_groups, winds
 from mmgtune.diagnose.bench.hypotheses import known_causes
 from mmgtune.diagnose.bench.inputs import DRAWS, changes
 from mmgtune.diagnose.bench.winds import ALONG, other_winds
@@ -211,3 +212,32 @@ def test_a_form_at_the_end_of_its_range_is_told():
     assert "2.5)" in said
     inside = {name: one for name, one in estimated.items() if not name.endswith("across")}
     assert not _deformed([Cause("wind", wind, inside, 0.0, None)])
+
+
+def test_the_mean_force_of_waves_differs_from_run_to_run(sailed):
+    """By groups: half as much in a run four times as long, and nothing where no such force acts."""
+    _, (trial, *_) = sailed
+    wavy = Model(with_effects(load_profile("suzaku"), {"wave-drift": {"force": 4000.0, "direction": 1.0}}, "a test"))
+    cases = SimpleNamespace(t=np.stack([trial.t, 4.0 * trial.t]))
+    theta = np.repeat(np.repeat(wavy.matrix()[:, None], 2, axis=1), 4001, axis=2)
+    drawn = wave_groups.other_waves(wavy, theta, cases, seed=1)
+    force = wavy.rows["effects.wave-drift.force"]
+    assert (drawn[:, :, 0] == theta[:, :, 0]).all()
+    short, long = np.std(drawn[force, :, 1:], axis=1) / 4000.0
+    lasting, duration = 8.0 * np.sqrt(wavy.L_pp / 9.81), np.ptp(trial.t)
+    assert short == pytest.approx(0.3 * np.sqrt(2.0 * lasting / duration), rel=0.05)
+    assert long == pytest.approx(0.5 * short, rel=0.05)
+    assert np.mean(drawn[force, :, 1:]) == pytest.approx(4000.0, rel=0.01)
+    others = [row for row in range(len(theta)) if row != force]
+    assert (drawn[others] == theta[others]).all()
+    calm = Model(load_profile("suzaku"))
+    plain = np.repeat(calm.matrix()[:, None], 2, axis=1)
+    assert wave_groups.other_waves(calm, plain, cases, seed=1) is plain
+
+
+def test_what_is_assumed_of_waves_is_said_where_they_are_found():
+    wave, lag = find_effect("wave-drift"), find_effect("steering-lag")
+    (told,) = wave_groups.in_words([wave, lag])
+    assert told["name"] == "groups of waves"
+    assert "30 % of the mean force" in told["value"]
+    assert wave_groups.in_words([lag]) == []

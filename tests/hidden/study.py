@@ -121,7 +121,7 @@ def kept(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> dict[str,
         "jumped": bool(said["jumped"]),
         "unclear": said["unexplained"]["unclear"],
         "best": [
-            {"effect": row["effect"], "parameters": row["parameters"], "gain": round(row["gain"], 1)}
+            {"effect": row["effect"], "parameters": row["parameters"], "gain": round(row["gain"] or 0.0, 1)}
             for row in said["candidates"][:3]
         ],
         "limits": [row for row in said["detectability"] if row["effect"] in hidden],

@@ -344,7 +344,7 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
     refitted = [r.hypothesis for r in first.refits]
     others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
     return listed + [
-        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, by=s.hypothesis.by) for s in others
+        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, None, None, None, by=s.hypothesis.by) for s in others
     ]
 
 
@@ -353,12 +353,14 @@ def _promising(refit: Refit, step: Step) -> bool:
 
 
 def _of_kin(result: Diagnosis, found: Found) -> list[Refit]:
-    """The effect that acts much like a single cause and may be meant, where this leaves more than noise."""
+    """The effect that acts much like a single cause and may be meant, where this leaves more than noise, or bends to
+    what there is by values of each run."""
     (cause,), left = found.causes, result.leftover.unknown
     if left > OF_ANOTHER_FORM:
         step = step_of(found, cause)
         return kin_among(step.refits, cause.tag) if step else []
-    return kin_among(found.steps[0].refits, cause.tag, NEARLY_ALL) if left > A_LITTLE_OFF else []
+    off = left > A_LITTLE_OFF or bool(cause.by)
+    return kin_among(found.steps[0].refits, cause.tag, NEARLY_ALL) if off else []
 
 
 def _telling_as_much(result: Diagnosis, found: Found) -> list[Refit]:

@@ -1,7 +1,7 @@
 """What the logged inputs do not say: a simulation driven by a noisy rudder angle wanders off a little, and for good.
 
 Besides noise, a log of one sample a second does not say when in that second the rudder began to move.  Nor does a log
-say what gusts there were, where a wind blows.
+say what gusts there were, where a wind blows, and what groups of waves.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from ...arrays import FloatArray, IntArray
 from ...fitting.problem import FitProblem
 from ...trial.kinematics import FEW_VALUES, rounding_noise, white_noise
+from .wave_groups import other_waves
 from .winds import other_winds
 from .workbench import Point, Workbench
 
@@ -45,12 +46,12 @@ def changes(
 
     The noise of revolutions and rudder angle is what second differences of the logs show; those far above it are bends.
     What a log in whole degrees leaves out stays the same for as long as it shows the same.
-    Where a wind blows it comes in gusts besides, and its force is of another shape.  A run that diverges with them
-    changes nothing.
+    Where a wind blows it comes in gusts besides, and its force is of another shape; waves come in groups.  A run that
+    diverges with them changes nothing.
 
     offsets  (n_cases, 6) of the initial states
     updates  samples at which each input of each case was updated; None where all of them are
-    logged   whether the logged inputs are other ones too, or the wind alone
+    logged   whether the logged inputs are other ones too, or wind and waves alone
     """
     rng = np.random.default_rng(seed)
     cases = problem.cases
@@ -72,7 +73,7 @@ def changes(
         target=np.zeros_like(np.repeat(cases.target, copies, axis=0)),
         weight=np.repeat(cases.weight, copies, axis=0),
     )
-    theta = theta.reshape(len(theta), -1, 1)
+    theta = other_waves(problem.model, theta, cases, seed).reshape(len(theta), -1, 1)
     result = problem.backend.run(problem.model, theta, many, integrator=problem.integrator, keep_residuals=True)
     assert result.residuals is not None  # asked for
     changed = np.empty((problem.n_residuals, DRAWS))

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...phrases import listed
-from ..bench import winds
+from ..bench import wave_groups, winds
 from ..bench.hypotheses import n_terms
 from ..evidence.leftover import NOTICED, Leftover
 from ..held_out.gain import MOST, Gain
@@ -114,7 +114,7 @@ class Belief:
         if self._told_by_none:
             return "fitted to all runs but one, it tells that one little better"
         if self._excused_by_gusts:
-            return "it leaves far more than noise, and more than gusts of such a wind would"
+            return "it leaves far more than noise, and more than gusts of such a wind, or groups of such waves, would"
         if why := self._bent:
             return why
         surely = {tag for tag, one in self.contributions if one.seen > TOLD and len(brought) > 1}
@@ -190,10 +190,10 @@ class Belief:
 
     @property
     def _excused_by_gusts(self) -> bool:
-        """Whether a wind among the causes leaves an error that is noise only if gusts make it, and gusts are too small
-        for it: a wind that is found excuses what it leaves."""
+        """Whether wind or waves among the causes leave an error that is noise only if gusts or groups make it, and
+        these are too small for it: a wind that is found excuses what it leaves."""
         before, after = self.chi2
-        blows = any(winds.blows(cause.effect) for cause in self.causes)
+        blows = any(winds.blows(one.effect) or wave_groups.drifts(one.effect) for one in self.causes)
         return blows and self.leftover.left_open > GUSTS_LEAVE and after > OF_WIND * before
 
     @property

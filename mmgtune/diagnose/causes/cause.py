@@ -160,7 +160,8 @@ class Trace:
 class Candidate:
     """A hypothesis that was looked at: score and refit at the first look; J on the test trials.
 
-    gain       fall of chi-squared by the refit; of one that was given up, as far as it had come
+    gain       fall of chi-squared by the refit; of one that was given up, as far as it had come; None without a refit
+    p_value    probability that chance brings as much; None without a refit
     unvisited  what the trials would have to visit for it to be believed, "" where they do
     by         what has a value of its own: "" for one for all, else a grouping of runs
     """
@@ -168,8 +169,8 @@ class Candidate:
     effect: str
     parameters: tuple[str, ...]
     score: float
-    gain: float
-    p_value: float
+    gain: float | None
+    p_value: float | None
     J_test: float | None
     unvisited: str = ""
     by: str = ""

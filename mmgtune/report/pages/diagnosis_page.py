@@ -337,7 +337,7 @@ def _unit(unit: str) -> str:
 
 
 def _why(data: Mapping[str, Any]) -> Section | None:
-    fitted = [row for row in data["candidates"] if row["gain"] >= 1.0]
+    fitted = [row for row in data["candidates"] if (row["gain"] or 0.0) >= 1.0]
     if not data["candidates"]:
         return None
     table = Table(
@@ -349,8 +349,8 @@ def _why(data: Mapping[str, Any]) -> Section | None:
                 clean(row["effect"]),
                 clean(", ".join(parameters_of(row))),
                 shown(row["score"], 3),
-                shown(row["gain"], 3) if row["gain"] >= 1.0 else "none",
-                _p(row["p_value"]) if row["gain"] >= 1.0 else NONE,
+                "not refitted" if row["gain"] is None else shown(row["gain"], 3) if row["gain"] >= 1.0 else "none",
+                _p(row["p_value"]) if (row["gain"] or 0.0) >= 1.0 else NONE,
                 shown(row["J_test"]),
             )
             for row in data["candidates"]
