@@ -177,13 +177,19 @@ def test_what_mass_and_inertia_need_to_be_a_ships_is_noticed():
 
 
 @pytest.mark.parametrize(
-    ("force", "by", "moved"),
-    [(6900.0, "", 0.15), (6900.0, "trial", 0.0), (6150.0, "", 0.0)],
-    ids=["beyond its interval", "values of runs", "within twice its interval"],
+    ("force", "by", "tag", "moved"),
+    [
+        (6900.0, "", "steady-force", 0.15),
+        (6900.0, "trial", "steady-force", 0.0),
+        (6150.0, "", "steady-force", 0.0),
+        (6150.0, "", "wave-drift", 0.025),
+        (6090.0, "", "wave-drift", 0.0),
+    ],
+    ids=["beyond", "values of runs", "within twice its interval", "interval with groups of waves", "within that"],
 )
-def test_how_far_another_cause_is_off_without_one(monkeypatch, force, by, moved):
+def test_how_far_another_cause_is_off_without_one(monkeypatch, force, by, tag, moved):
     drift, draught = "effects.wave-drift.force", "effects.loading.draught"
-    waves = SimpleNamespace(names=(drift,), by=by)
+    waves = SimpleNamespace(names=(drift,), by=by, effect=find_effect(tag))
     cause = SimpleNamespace(names=(draught,), by="")
     final = SimpleNamespace(names=(drift, draught), unit=[0.6, 0.4])
     fewer = SimpleNamespace(names=(drift,), unit=[force / 10_000.0])

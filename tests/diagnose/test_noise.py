@@ -62,6 +62,19 @@ def test_faint_slow_noise_is_seen_though_a_fit_took_most_of_it(seed):
     assert mean(found, "fading") > 3.0 * mean(naive, "fading")
 
 
+@pytest.mark.parametrize(("phi", "least", "most"), [(0.975, 0.89, 0.98), (0.9, 0.8, 0.96), (0.6, 0.4, 0.82)])
+def test_how_slowly_noise_fades_is_told_though_a_fit_took_most_of_it(phi, least, most):
+    """By the first lags alone noise that fades in 40 samples faded in 5, and what it did passed for an error of a log."""
+    true = NoiseModel(Cases(), dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), ChannelNoise(phi, 0.4, 1.0)))
+    fitted = fit_of_slow_changes(8)
+    for seed in (5, 6):
+        left = fitted(true.restore(np.random.default_rng(seed).standard_normal(Cases.rows.size)))
+        seen = [one for one in estimate(Cases(), left, fitted).channels.values() if one.fading > 0.0]
+        assert len(seen) >= 4
+        assert all(least < one.phi < most for one in seen)
+        assert np.mean([one.fading for one in seen]) == pytest.approx(0.4, abs=0.2)
+
+
 def test_white_noise_stays_as_it_is():
     white = np.random.default_rng(1).standard_normal(Cases.rows.size)
     fitted = fit_of_slow_changes(3)

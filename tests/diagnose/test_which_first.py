@@ -11,7 +11,7 @@ import pytest
 from mmgtune.diagnose.answering.judging import _of_kin
 from mmgtune.diagnose.bench.hypotheses import Hypothesis
 from mmgtune.diagnose.searching import search
-from mmgtune.diagnose.searching.refit import Refit, believable_first, kin_among, rivals_among
+from mmgtune.diagnose.searching.refit import Refit, believable_first, decide, kin_among, rivals_among
 from mmgtune.diagnose.searching.refitting import Refitting
 from mmgtune.diagnose.searching.search import Step
 from mmgtune.effects import find_effect
@@ -78,6 +78,25 @@ def test_where_chance_brings_all_of_it_nothing_comes_first():
     assert believable_first(others, 0.01) == others
 
 
+@pytest.mark.parametrize(
+    ("before", "gain", "by", "takes"),
+    [
+        (1_780.0, 1_800.0, "", True),
+        (1_780.0, 1_500.0, "", False),
+        (300.0, 310.0, "", False),
+        (1_780.0, 1_800.0, "trial", False),
+    ],
+    ids=["all that is left", "a part of it", "hardly more than noise was left", "values of runs bend to anything"],
+)
+def test_what_groups_of_waves_may_leave_has_not_the_shape_of_a_single_cause(before, gain, by, takes):
+    """A tenth less draught beside waves: groups may leave 110 times as much along it, and nothing was left."""
+    one = fitted("loading", gain, 110.0, 0.001)
+    one.hypothesis.by, one.point.chi2 = by, N_RESIDUALS + before - gain
+    bench = SimpleNamespace(problem=SimpleNamespace(n_residuals=N_RESIDUALS), options=SimpleNamespace(level=0.01))
+    assert decide(bench, [one], []) == (takes, "" if takes else "it explains too little for one more parameter")
+    assert not decide(bench, [replace(one, p_value=0.02)], [])[0]
+
+
 @pytest.mark.parametrize(("wind", "kin"), [(118_000.0, ["wind"]), (30_000.0, [])])
 def test_a_wind_may_be_meant_where_the_drift_of_waves_fits_badly(wind, kin):
     drift = fitted("wave-drift", 340_000.0, 1.0, 0.0)
@@ -87,12 +106,21 @@ def test_a_wind_may_be_meant_where_the_drift_of_waves_fits_badly(wind, kin):
 
 
 @pytest.mark.parametrize(
-    ("left", "wind", "kin"), [(0.2, 337_000.0, True), (0.2, 330_000.0, False), (0.0, 337_000.0, False)]
+    ("left", "by", "wind", "kin"),
+    [
+        (0.2, "", 337_000.0, True),
+        (0.2, "", 330_000.0, False),
+        (0.0, "", 337_000.0, False),
+        (0.0, "trial", 337_000.0, True),
+        (0.0, "trial", 330_000.0, False),
+    ],
 )
-def test_where_a_little_more_than_noise_is_left_the_form_of_a_force_may_be_off(left, wind, kin):
-    """Waves of another hand, whose drift had an envelope, were a wind that differed from run to run."""
+def test_where_a_little_more_than_noise_is_left_the_form_of_a_force_may_be_off(left, by, wind, kin):
+    """Waves of another hand, whose drift had an envelope, were a wind that differed from run to run: values of each run
+    bend to that, and leave nothing."""
     looked_at = [fitted("wave-drift", 340_000.0, 1.0, 0.0), fitted("current", 339_000.0, 1.0, 0.0)]
     looked_at.append(fitted("wind", wind, 1.0, 0.0))
+    looked_at[0].hypothesis.by = by
     found = SimpleNamespace(causes=[looked_at[0].hypothesis], steps=[SimpleNamespace(refits=looked_at)])
     of = _of_kin(SimpleNamespace(leftover=SimpleNamespace(unknown=left)), found)
     assert [one.hypothesis.tag for one in of] == ["wind"] * kin
@@ -137,6 +165,7 @@ def test_what_was_near_to_another_form_of_a_cause_is_its_rival(monkeypatch, gain
     found = SimpleNamespace(causes=[draught], final=final, steps=steps, left_out=[])
     monkeypatch.setattr(search, "without", lambda *_: base)
     monkeypatch.setattr(search, "hopeless_beside", lambda *_: math.inf)
+    monkeypatch.setattr(search, "_where", lambda point, _: point)
     monkeypatch.setattr(search, "_with", lambda *_: SimpleNamespace(chi2=base.chi2 - gain))
     assert [one.hypothesis.tag for one in search.rivals_of(None, found, draught)] == rivals
     # What a second search leaves out did as well at the first look, and may in the place of what it finds.

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from ...phrases import LARGE, capital, in_percent, listed
 from ...units import DEG
+from ..bench.of_hull import AS_WELL
 from ..causes.belief import TOLD
 from ..evidence.leftover import change_in_words, in_words
 from ..held_out.gain import MOST
@@ -116,12 +117,13 @@ def _of_causes(answer: Answer) -> str:
 
 
 def _brought(answer: Answer) -> list[str]:
-    """What the causes remove on held-out trials, and what no ship has that the model would take without one of them."""
+    """What the causes remove on held-out trials, and what no ship has that the model would take without one of them,
+    where that decides."""
     gained = _gained(answer, "it" if len(answer.causes) == 1 else "them", _where(answer))
-    without = {
-        tag: f"takes {one.unlike_any}, as no ship has it." for tag, one in answer.contributions if one.unlike_any
-    }
-    if without and answer.gain.share_removed <= 0.0:
+    nothing = answer.gain.share_removed <= 0.0
+    needed = [(tag, one) for tag, one in answer.contributions if one.unlike_any and (nothing or one.of_hull >= AS_WELL)]
+    without = {tag: f"takes {one.unlike_any}, as no ship has it." for tag, one in needed}
+    if without and nothing:
         no_worse = f"the model is no worse {_where(answer)}, but"
         return [f"Re-tuned without {tag}, {no_worse} {takes}" for tag, takes in without.items()]
     return [gained, *(f"Without {tag} the model {takes}" for tag, takes in without.items())]

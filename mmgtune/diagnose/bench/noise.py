@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -23,6 +23,16 @@ DRAWS = 8
 
 ROUNDS = 6
 """Times a noise model is corrected for that; each time about half of what is missing comes back."""
+
+FAR_LAGS = 20
+"""Autocovariances that tell how slowly a part fades of which fitting took most."""
+
+FADE_IN = (1.25, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)
+"""Samples in which such a part may fade to 1/e."""
+
+AS_LIKELY = 1.0
+"""Sum of squares, in variances of autocorrelations, by which a slower part may fit worse and is assumed: chance brings
+as much, and noise that is thought quicker than it is makes causes of what it does."""
 
 NEAR = 4.0
 """Variance over that of white noise beyond which what is left may be an error of the model, and is not made more of."""
@@ -221,17 +231,72 @@ def estimate(
     for _ in range(ROUNDS):
         again = allowing(model, [name for name, noise in model.channels.items() if noise.fading > 0.0])
         model = NoiseModel(cases, {**model.channels, **again})
-    return model
+    slow = [name for name, noise in model.channels.items() if noise.fading > 0.0 and not noise.rough]
+    return _Slow(model, residuals, fitted, plain, counts).likeliest(slow) if slow else model
 
 
-def _autocovariances(cases: Cases, values: FloatArray) -> dict[str, FloatArray]:
-    """(LAGS + 1,) by channel, of columns (n_residuals, k) pooled."""
+@dataclass(frozen=True, eq=False)
+class _Slow:
+    """How slowly parts fade of which fitting took most: what it leaves of simulated noise is held against residuals.
+
+    model      noise as the first lags have it
+    residuals  (n_residuals,), and what ``fitted`` them; see ``estimate``
+    plain      (n_residuals, DRAWS) white noise
+    counts     samples by channel
+    """
+
+    model: NoiseModel
+    residuals: FloatArray
+    fitted: Callable[[FloatArray], FloatArray]
+    plain: FloatArray
+    counts: dict[str, int]
+
+    def likeliest(self, channels: Sequence[str]) -> NoiseModel:
+        """The model with the slowest parts of channels that explain the autocovariances as well as any."""
+        cases = self.model.cases
+        seen = _autocovariances(cases, self.residuals[:, None], FAR_LAGS)
+        misfits = {name: np.empty(len(FADE_IN)) for name in channels}
+        for k, samples in enumerate(FADE_IN):
+            left = self._left(self._settled(dict.fromkeys(channels, math.exp(-1.0 / samples)), seen))
+            for name in channels:
+                off = (seen[name] - left[name])[1:] / seen[name][0]
+                misfits[name][k] = self.counts[name] * float(off @ off)
+        likely = {name: np.flatnonzero(one <= one.min() + AS_LIKELY) for name, one in misfits.items()}
+        return self._settled({name: math.exp(-1.0 / FADE_IN[those[-1]]) for name, those in likely.items()}, seen)
+
+    def _settled(self, phi: dict[str, float], seen: dict[str, FloatArray]) -> NoiseModel:
+        """The model with parts of these autocorrelations, as large as fitting must have found them to leave what is
+        seen."""
+        model = self.model
+        powers = {name: one ** np.arange(1.0, FAR_LAGS + 1.0) for name, one in phi.items()}
+        for name, one in phi.items():
+            noise = replace(model.channels[name], phi=one)
+            model = NoiseModel(model.cases, {**model.channels, name: noise})
+        for _ in range(ROUNDS):
+            left = self._left(model)
+            settled = {}
+            for name in phi:
+                noise = model.channels[name]
+                lagged = seen[name][1:] - left[name][1:] + noise.fading * powers[name]
+                variance = float(seen[name][0] - left[name][0]) + noise.variance
+                fading = float(np.clip(powers[name] @ lagged / (powers[name] @ powers[name]), 0.0, variance))
+                settled[name] = replace(noise, fading=fading, white=max(variance - fading, 1e-3 * variance))
+            model = NoiseModel(model.cases, {**model.channels, **settled})
+        return model
+
+    def _left(self, model: NoiseModel) -> dict[str, FloatArray]:
+        """What fitting leaves of noise of a model, (FAR_LAGS + 1,) autocovariances by channel."""
+        return _autocovariances(model.cases, self.fitted(model.restore(self.plain)), FAR_LAGS)
+
+
+def _autocovariances(cases: Cases, values: FloatArray, lags: int = LAGS) -> dict[str, FloatArray]:
+    """(lags + 1,) by channel, of columns (n_residuals, k) pooled."""
     found = {}
     for channel, series in rows_of_channels(cases).items():
-        sums = np.zeros(LAGS + 1)
+        sums = np.zeros(lags + 1)
         for rows in series:
             part = values[rows]
-            for lag in range(min(LAGS, len(part) - 1) + 1):
+            for lag in range(min(lags, len(part) - 1) + 1):
                 sums[lag] += float(np.sum(part[lag:] * part[: len(part) - lag]))
         found[channel] = sums / (sum(map(len, series)) * values.shape[1])
     return found

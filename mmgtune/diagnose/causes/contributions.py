@@ -18,6 +18,7 @@ from ...backends import STATES
 from ...effects import SensorEffect
 from ...fitting.least_squares import fit_offsets
 from ...trial import Trial
+from ..bench import wave_groups, winds
 from ..bench.hypotheses import Hypothesis
 from ..bench.of_hull import AS_WELL, explained_by_hull
 from ..bench.workbench import Point, Workbench
@@ -74,6 +75,9 @@ beyond which it is no more than these: estimated on the first part of a run they
 MOVES = 0.1
 """Share of the size of another cause by which that would be off, and beyond its interval, without one that a user would
 notice by this."""
+
+TWICE = 2.0
+"""Half-widths of its interval by which another cause must be off for that."""
 
 SHOWS, OWN = 0.2, 100.0
 """Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
@@ -355,21 +359,25 @@ def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, size
     there, gone = (dict(zip(point.names, point.unit, strict=True)) for point in (found.final, fewer))
     largest = 0.0
     for other in found.causes:
-        wrong = any(_is_beyond(sizes[name], values[name]) for name in other.names if name in values)
+        if other is cause or other.by or not set(other.names) <= set(gone):
+            continue
+        weather = winds.blows(other.effect) or wave_groups.drifts(other.effect)
+        times = 1.0 if weather else TWICE  # intervals allow for gusts and groups, which are the same without the cause
+        wrong = any(_is_beyond(sizes[name], values[name], times) for name in other.names)
         size = size_of(bench, found.final, other)
-        if other is cause or other.by or not wrong or not size > 0.0 or not set(other.names) <= set(gone):
+        if not wrong or not size > 0.0:
             continue
         off = math.hypot(*((gone[name] - there[name]) / typical(bench, name) for name in other.names))
         largest = max(largest, off / size)
     return largest
 
 
-def _is_beyond(estimate: Estimate, value: float) -> bool:
-    """Whether a value is further from an estimate than twice its interval reaches."""
+def _is_beyond(estimate: Estimate, value: float, times: float) -> bool:
+    """Whether a value is further from an estimate than so many times its interval reaches."""
     if estimate.low is None or estimate.high is None:
         return False
     middle, half = 0.5 * (estimate.low + estimate.high), 0.5 * (estimate.high - estimate.low)
-    return abs(value - middle) > 2.0 * half
+    return abs(value - middle) > times * half
 
 
 def size_of(bench: Workbench, point: Point, cause: Hypothesis) -> float:

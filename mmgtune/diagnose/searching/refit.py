@@ -23,6 +23,9 @@ values of another that differ between runs: these bend to an effect whose form i
 AKIN = 0.3
 """Share of the fall of chi-squared from which on an effect that acts much like the best may be meant."""
 
+OF_REST, REST = 0.9, 0.05
+"""Share of the error beyond noise that a cause takes which leaves nothing, and the least of it, over the noise."""
+
 WORTH = 0.1
 """Smallest size worth speaking of where another effect would do as well, as a share of the typical one."""
 
@@ -64,6 +67,12 @@ class Refit:
         simpler = other.hypothesis.by and not self.hypothesis.by
         return (better >= BETTER or bool(simpler)) and better - self.cost + other.cost >= ENOUGH
 
+    def takes_the_rest(self, n: int) -> bool:
+        """Whether one value for all runs explains nearly all that was left beyond noise of n residuals: what gusts, or
+        groups of waves, leave is not of its shape, however much they may leave."""
+        rest = self.point.chi2 + self.gain - n
+        return not self.hypothesis.by and self.gain >= ENOUGH + self.cost and self.gain >= max(OF_REST * rest, REST * n)
+
     def by_chance(self, level: float) -> bool:
         """Whether chance brings as large a gain at this probability level, or its evidence is less than ``ENOUGH``."""
         return self.p_value > level or self.evidence < ENOUGH
@@ -101,7 +110,7 @@ def decide(bench: Workbench, refits: Sequence[Refit], rivals: Sequence[Refit]) -
         return False, f"{best.hypothesis.tag} would be believed only where trials visit {best.unvisited}"
     if best.p_value > bench.options.level:
         return False, f"chance brings as much in {best.p_value:.2g} of all searches"
-    if best.evidence < ENOUGH:
+    if best.evidence < ENOUGH and not best.takes_the_rest(bench.problem.n_residuals):
         return False, "it explains too little for one more parameter"
     if best.size < WORTH and rivals:  # so little, and not even told apart
         return False, f"its size is below a {1.0 / WORTH:.0f}th of what is worth speaking of"
