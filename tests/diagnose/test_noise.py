@@ -64,7 +64,7 @@ def test_faint_slow_noise_is_seen_though_a_fit_took_most_of_it(seed):
 
 @pytest.mark.parametrize(("phi", "least", "most"), [(0.975, 0.89, 0.98), (0.9, 0.8, 0.96), (0.6, 0.4, 0.82)])
 def test_how_slowly_noise_fades_is_told_though_a_fit_took_most_of_it(phi, least, most):
-    """By the first lags alone noise that fades in 40 samples faded in 5, and what it did passed for an error of a log."""
+    """By the first lags noise that fades in 40 samples faded in 5, and what it did passed for an error of a log."""
     true = NoiseModel(Cases(), dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), ChannelNoise(phi, 0.4, 1.0)))
     fitted = fit_of_slow_changes(8)
     for seed in (5, 6):
