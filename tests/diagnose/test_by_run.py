@@ -65,7 +65,7 @@ def test_another_current_in_each_run(currents):
     assert np.sum(off < 1.96) >= 8
     assert off.max() < 3.5
     assert cause.runs.size(0)[0] == pytest.approx(0.35, abs=0.01)
-    assert "The current differed from run to run: 0.35 m/s." in result.sentence()
+    assert "The current differed from run to run: 0.35 m/s, towards no common direction." in result.sentence()
 
 
 def test_runs_held_out_are_judged_on_what_follows_their_first_part(currents):
@@ -355,7 +355,11 @@ def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
     about_north = runs((10.2, 359.0), (10.2, 1.0)).sentence
     assert about_north.startswith("The wind was much the same")
     assert about_north.endswith(", from 0°")
-    assert runs((10.2, 239.6), (10.2, 59.6)).sentence.startswith("The wind differed from run to run")
+    assert runs((10.2, 239.6), (10.2, 59.6)).sentence == (
+        "The wind differed from run to run: 10 m/s, from no common direction"
+    )
+    about_north = runs((10.2, 330.0), (14.2, 10.0), (7.1, 350.0)).sentence
+    assert about_north == "The wind differed from run to run: 7.1 to 14.2 m/s, from 330 to 010°"
     # An error common to all runs, as of the force of a wind, is larger than they differ by: the range is no interval.
     assert runs((10.2, 240.0), (11.4, 242.0)).sentence == (
         "The wind was much the same in each run: 10.2 to 11.4 m/s, each known to ± 1.8 m/s, from 241°"

@@ -25,6 +25,9 @@ from ..signatures.wording import error_in_words, quantity, range_in_words
 ALIKE = 0.2
 """Difference from the mean of all runs, over that, up to which values with a direction are much the same."""
 
+WIDE = 2.0 * math.pi / 3.0
+"""Sector [rad] beyond which directions have nothing in common."""
+
 CERTAIN = 3.0
 """Standard errors from which the value of a run is other than none at all."""
 
@@ -237,7 +240,7 @@ class ByRun:
             text += f"{self._number_of}{of_all}{self._each_known_to(shown)}"
             several = [name_of(self.groups[k]) for k in shown]
             text += f" in {listed(several, 4)}, and none for certain in the other {others}" if others else ""
-        return text + self._all_alike_towards() + self._within() + self._doubted
+        return text + self._all_towards(shown) + self._within() + self._doubted
 
     def _each_known_to(self, shown: Sequence[int]) -> str:
         """The error of values that are much the same, where it is larger than they differ by; else ""."""
@@ -274,12 +277,20 @@ class ByRun:
         towards = [self.towards(k) for k in range(len(self.groups))]
         return np.array([self.size(k)[0] * np.exp(1j * told[0]) for k, told in enumerate(towards) if told])
 
-    def _all_alike_towards(self) -> str:
-        """The direction of values that are much the same, in words; "" for others."""
-        if not self._much_alike:
-            return ""
+    def _all_towards(self, shown: Sequence[int]) -> str:
+        """The directions of the values of some groups, in words; "" for what has none."""
         sense = "towards" if self.effect.told_as else "from"
-        return f", {sense} {round(math.degrees(np.angle(self._vectors.mean()))) % 360}°"
+        if self._much_alike:
+            return f", {sense} {round(math.degrees(np.angle(self._vectors.mean()))) % 360}°"
+        angles = np.array([told[0] for k in shown if (told := self.towards(k))])
+        if not len(angles):
+            return ""
+        middle = float(np.angle(np.exp(1j * angles).sum()))
+        off = [math.remainder(angle - middle, 2.0 * math.pi) for angle in angles.tolist()]
+        if max(off) - min(off) > WIDE:
+            return f", {sense} no common direction"
+        ends = dict.fromkeys(f"{round(math.degrees(middle + end)) % 360:03d}" for end in (min(off), max(off)))
+        return f", {sense} {' to '.join(ends)}°"
 
     @property
     def _of_what(self) -> str:
