@@ -359,7 +359,7 @@ def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
         "The wind differed from run to run: 10 m/s, from no common direction"
     )
     about_north = runs((10.2, 330.0), (14.2, 10.0), (7.1, 350.0)).sentence
-    assert about_north == "The wind differed from run to run: 7.1 to 14.2 m/s, from 330 to 010°"
+    assert about_north == "The wind differed from run to run: 7.1 to 14 m/s, from 330 to 010°"
     # An error common to all runs, as of the force of a wind, is larger than they differ by: the range is no interval.
     assert runs((10.2, 240.0), (11.4, 242.0)).sentence == (
         "The wind was much the same in each run: 10.2 to 11.4 m/s, each known to ± 1.8 m/s, from 241°"
