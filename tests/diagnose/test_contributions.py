@@ -976,6 +976,34 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
 
 
 @pytest.mark.parametrize(
+    ("sized", "at_ends", "told"),
+    [(True, False, True), (False, False, False), (True, True, False)],
+    ids=["told", "perhaps none", "at the end of its range"],
+)
+def test_how_large_the_best_that_is_known_would_be_is_said_where_it_is_told(sized, at_ends, told):
+    """Of an antenna on a mast that swayed, found to a foot, the answer said that it removed 64 % of the error."""
+    antenna = SimpleNamespace(
+        tag="antenna", effect="one", runs=None, sized=sized, at_ends=at_ends, sentence="The antenna stood 24 m aft"
+    )
+    left = SimpleNamespace(unknown=6.4, noticed=True, offsets={}, changed={})
+    seen = SimpleNamespace(
+        causes=(antenna,),
+        contributions=(("antenna", None),),
+        unclear="",
+        tells_a_part=True,
+        leftover=left,
+        misses_test=False,
+        of_a_sensor=False,
+        explained_share=0.64,
+    )
+    said = saying._of_the_unknown(seen).why
+    assert said.startswith("The best of what is known, antenna, removes 64 % of the error and leaves")
+    assert said.endswith("If it is a part of what is wrong, the antenna stood 24 m aft.") == told
+    seen.causes *= 2
+    assert "a part of what is wrong" not in saying._of_the_unknown(seen).why
+
+
+@pytest.mark.parametrize(
     ("removed", "surely", "most", "too_few", "said"),
     [
         (0.96, 0.0, False, False, "removes 96 % of the error on trials not used, and runs are too few"),
@@ -1000,6 +1028,43 @@ def test_how_sure_a_gain_is_stands_beside_it(removed, surely, most, too_few, sai
     )
     seen = SimpleNamespace(gain=gain, options=SimpleNamespace(leeway=0.05), choice=None, explained_share=0.99)
     assert said in saying._gained(seen, "it", "on trials not used")
+
+
+@pytest.mark.parametrize(
+    ("removed", "of_hull", "said"),
+    [
+        (0.96, 0.3, ["Adding it removes 96 % of the error on trials not used."]),
+        (
+            0.96,
+            0.97,
+            [
+                "Adding it removes 96 % of the error on trials not used.",
+                "Without shallow-water the model takes TOO MUCH",
+            ],
+        ),
+        (-0.1, 0.3, ["Re-tuned without shallow-water, the model is no worse on trials not used, but takes TOO MUCH"]),
+    ],
+    ids=["needless to say", "a hull further off would do", "trials not used are told as well without"],
+)
+def test_what_no_ship_has_is_said_where_that_decides(removed, of_hull, said):
+    gain = SimpleNamespace(
+        share_removed=removed,
+        surely_removed=removed,
+        tells_most_runs=False,
+        runs_told=(1, 1),
+        too_few=False,
+        held_out="test",
+    )
+    water = Contribution(1.0, of_hull=of_hull, unlike_any="TOO MUCH")
+    seen = SimpleNamespace(
+        gain=gain,
+        options=SimpleNamespace(leeway=0.05),
+        choice=None,
+        explained_share=0.99,
+        causes=("one",),
+        contributions=(("shallow-water", water),),
+    )
+    assert saying._brought(seen) == [one.replace("TOO MUCH", "TOO MUCH, as no ship has it.") for one in said]
 
 
 @pytest.mark.parametrize(

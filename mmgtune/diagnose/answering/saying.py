@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...phrases import LARGE, capital, in_percent, listed
+from ...phrases import LARGE, capital, in_percent, listed, small
 from ...units import DEG
 from ..bench.of_hull import AS_WELL
 from ..causes.belief import TOLD
@@ -218,7 +218,7 @@ def _of_the_unknown(answer: Answer) -> Said:
             f"The best of what is known, {tags}, would remove {_explained(answer)} of the error {them} found on, but "
             f"the model with it {held_out} {_where(answer)}."
         )
-        return Said(_CANNOT_NAME, best)
+        return Said(_CANNOT_NAME, _joined(best, _as_a_part(answer)))
     if answer.misses_test:
         return Said(
             "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
@@ -238,8 +238,15 @@ def _of_the_unknown(answer: Answer) -> Said:
     unknown = "Something is wrong that this program does not know"
     if answer.tells_a_part:
         best = f"The best of what is known, {tags}, removes {_explained(answer)} of the error and leaves {left}."
-        return Said(f"{unknown}.", " ".join([best, *offsets]))
+        return Said(f"{unknown}.", _joined(best, _as_a_part(answer), *offsets))
     return Said(f"{unknown}: the re-tuned model leaves {left}, and no known cause accounts for it.", " ".join(offsets))
+
+
+def _as_a_part(answer: Answer) -> str:
+    """How large the only cause that is known would be, where that is told; "" where not."""
+    one = answer.causes[0] if len(answer.causes) == 1 else None
+    told = one is not None and one.effect is not None and one.sized and not (one.at_ends or one.runs)
+    return f"If it is a part of what is wrong, {small(one.sentence)}." if one and told else ""
 
 
 def _of_the_named(answer: Answer) -> str:
