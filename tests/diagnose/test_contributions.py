@@ -45,9 +45,8 @@ from mmgtune.units import DEG
 from tests.diagnose.beliefs import belief_with
 from tests.diagnose.sensors import logged
 from tests.hidden import plant
-from tests.hidden.cases import Case, single
+from tests.hidden.cases import Case, pair, single
 from tests.hidden.plant import simulate, write
-from tests.hidden.study import cases
 from tools.write_answers import answers, right
 
 ROOT = Path(__file__).parent.parent.parent
@@ -203,7 +202,8 @@ def test_how_far_another_cause_is_off_without_one(monkeypatch, force, by, tag, m
 
 @pytest.mark.long
 def test_a_ship_lighter_than_her_profile_is_told_beside_waves(tmp_path):
-    case = next(case for _, case in cases() if case.name == "pair-loading-and-wave-drift-3041")
+    case = pair(3041)
+    assert case.name == "pair-loading-and-wave-drift-3041"
     write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)
     asked = DiagnoseOptions(effects=("loading", "wave-drift", "wind", "current"))
     said = diagnose(load_profile("suzaku"), load_trials(tmp_path), asked)
