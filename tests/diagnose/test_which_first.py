@@ -106,23 +106,24 @@ def test_a_wind_may_be_meant_where_the_drift_of_waves_fits_badly(wind, kin):
 
 
 @pytest.mark.parametrize(
-    ("left", "by", "wind", "kin"),
+    ("left", "by", "chi2", "wind", "kin"),
     [
-        (0.2, "", 337_000.0, True),
-        (0.2, "", 330_000.0, False),
-        (0.0, "", 337_000.0, False),
-        (0.0, "trial", 337_000.0, True),
-        (0.0, "trial", 330_000.0, False),
+        (0.2, "", 1.2, 337_000.0, True),
+        (0.2, "", 1.2, 330_000.0, False),
+        (0.0, "", 1.07, 337_000.0, False),
+        (0.0, "trial", 1.07, 337_000.0, True),
+        (0.0, "trial", 1.07, 330_000.0, False),
+        (0.0, "trial", 1.01, 337_000.0, False),
     ],
 )
-def test_where_a_little_more_than_noise_is_left_the_form_of_a_force_may_be_off(left, by, wind, kin):
+def test_where_a_little_more_than_noise_is_left_the_form_of_a_force_may_be_off(left, by, chi2, wind, kin):
     """Waves of another hand, whose drift had an envelope, were a wind that differed from run to run: values of each run
-    bend to that, and leave nothing."""
+    bend to that, and leave nothing that gusts would not."""
     looked_at = [fitted("wave-drift", 340_000.0, 1.0, 0.0), fitted("current", 339_000.0, 1.0, 0.0)]
     looked_at.append(fitted("wind", wind, 1.0, 0.0))
     looked_at[0].hypothesis.by = by
     found = SimpleNamespace(causes=[looked_at[0].hypothesis], steps=[SimpleNamespace(refits=looked_at)])
-    of = _of_kin(SimpleNamespace(leftover=SimpleNamespace(unknown=left)), found)
+    of = _of_kin(SimpleNamespace(leftover=SimpleNamespace(unknown=left), chi2=(9.0, chi2)), found)
     assert [one.hypothesis.tag for one in of] == ["wind"] * kin
 
 

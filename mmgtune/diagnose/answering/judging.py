@@ -46,6 +46,9 @@ A_LITTLE_OFF, NEARLY_ALL = 0.1, 0.99
 """That variance from which it may be a little off, and share of the fall of chi-squared from which an effect that acts
 much like it does as well then: wind and the drift of waves."""
 
+OF_RUNS_OFF = 0.03
+"""The same of values of each run, which bend to most of it, with what gusts are thought to leave."""
+
 AS_UNSEEN = 0.95
 """Share of what values of each run remove of the error on test trials, estimated on a part of these, from which a cause
 that is the same for all of them, and sees none, may be the cause as well."""
@@ -353,13 +356,13 @@ def _promising(refit: Refit, step: Step) -> bool:
 
 
 def _of_kin(result: Diagnosis, found: Found) -> list[Refit]:
-    """The effect that acts much like a single cause and may be meant, where this leaves more than noise, or bends to
-    what there is by values of each run."""
+    """The effect that acts much like a single cause and may be meant, where this leaves more than noise, be it what
+    gusts may leave of values of each run, which bend to what there is."""
     (cause,), left = found.causes, result.leftover.unknown
     if left > OF_ANOTHER_FORM:
         step = step_of(found, cause)
         return kin_among(step.refits, cause.tag) if step else []
-    off = left > A_LITTLE_OFF or bool(cause.by)
+    off = left > A_LITTLE_OFF or (bool(cause.by) and result.chi2[1] > 1.0 + OF_RUNS_OFF)
     return kin_among(found.steps[0].refits, cause.tag, NEARLY_ALL) if off else []
 
 
