@@ -12,10 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
+from ...effects import Effect
 from ...fitting.problem import FitProblem
 from ...trial.kinematics import FEW_VALUES, rounding_noise, white_noise
-from .wave_groups import other_waves
-from .winds import other_winds
+from .wave_groups import drifts, other_waves
+from .winds import blows, other_winds
 from .workbench import Point, Workbench
 
 DRAWS = 16
@@ -26,6 +27,11 @@ BETWEEN = 0.2
 
 CLEAR = 8.0
 """Second differences beyond this many deviations of the noise are bends."""
+
+
+def unsteady(effect: Effect | None) -> bool:
+    """Whether what an effect is of changes within a run as no log says: a wind in gusts, waves in groups."""
+    return blows(effect) or drifts(effect)
 
 
 def wander(bench: Workbench, point: Point) -> FloatArray:

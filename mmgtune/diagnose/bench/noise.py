@@ -70,10 +70,9 @@ class ChannelNoise:
         """Variance of a sample."""
         return self.fading + self.white
 
-    @property
-    def autocovariance(self) -> FloatArray:
-        """(LAGS + 1,) of neighbouring samples, the variance first."""
-        found = self.fading * self.phi ** np.arange(LAGS + 1.0)
+    def autocovariance(self, lags: int) -> FloatArray:
+        """(lags + 1,) of neighbouring samples, the variance first."""
+        found = self.fading * self.phi ** np.arange(lags + 1.0)
         found[0] += self.white
         return np.asarray(found)
 
@@ -218,7 +217,7 @@ def estimate(
     def allowing(assumed: NoiseModel, channels: Iterable[str]) -> dict[str, ChannelNoise]:
         """Noise of channels, with what fitting takes of the noise assumed put back."""
         left = _autocovariances(cases, fitted(assumed.restore(plain)))
-        taken = {channel: assumed.channels[channel].autocovariance - left[channel] for channel in channels}
+        taken = {channel: assumed.channels[channel].autocovariance(LAGS) - left[channel] for channel in channels}
         return {name: _decompose(found[name] + one, counts[name], uneven[name]) for name, one in taken.items()}
 
     # What fitting leaves of white noise alternates, which hides noise that fades.
@@ -267,21 +266,13 @@ class _Slow:
     def _settled(self, phi: dict[str, float], seen: dict[str, FloatArray]) -> NoiseModel:
         """The model with parts of these autocorrelations, as large as fitting must have found them to leave what is
         seen."""
-        model = self.model
-        powers = {name: one ** np.arange(1.0, FAR_LAGS + 1.0) for name, one in phi.items()}
-        for name, one in phi.items():
-            noise = replace(model.channels[name], phi=one)
-            model = NoiseModel(model.cases, {**model.channels, name: noise})
+        cases, channels = self.model.cases, self.model.channels
+        model = NoiseModel(cases, {**channels, **{name: replace(channels[name], phi=one) for name, one in phi.items()}})
         for _ in range(ROUNDS):
             left = self._left(model)
-            settled = {}
-            for name in phi:
-                noise = model.channels[name]
-                lagged = seen[name][1:] - left[name][1:] + noise.fading * powers[name]
-                variance = float(seen[name][0] - left[name][0]) + noise.variance
-                fading = float(np.clip(powers[name] @ lagged / (powers[name] @ powers[name]), 0.0, variance))
-                settled[name] = replace(noise, fading=fading, white=max(variance - fading, 1e-3 * variance))
-            model = NoiseModel(model.cases, {**model.channels, **settled})
+            whole = {name: seen[name] - left[name] + model.channels[name].autocovariance(FAR_LAGS) for name in phi}
+            settled = {name: _with_memory(one, whole[name]) for name, one in phi.items()}
+            model = NoiseModel(cases, {**channels, **settled})
         return model
 
     def _left(self, model: NoiseModel) -> dict[str, FloatArray]:
@@ -318,10 +309,16 @@ def _decompose(covariance: FloatArray, n: int, uneven: float) -> ChannelNoise:
     if float(np.sum(lagged)) <= NOTICED * variance * np.sqrt(LAGS / n):
         return ChannelNoise(white=variance)
     phi = float(np.clip(lagged[1:] @ lagged[:-1] / (lagged[:-1] @ lagged[:-1]), 0.05, SLOWEST))
-    powers = phi ** np.arange(1, LAGS + 1)
-    fading = float(np.clip(powers @ lagged / (powers @ powers), 0.0, variance))
     rough = abs(uneven - (3.0 - phi) + LESS / math.sqrt(n)) < AS_ROUGH + BY_CHANCE / math.sqrt(n)
-    return ChannelNoise(phi=phi, fading=fading, white=max(variance - fading, 1e-3 * variance), rough=rough)
+    return replace(_with_memory(phi, covariance), rough=rough)
+
+
+def _with_memory(phi: float, covariance: FloatArray) -> ChannelNoise:
+    """Noise of which a part fades with this autocorrelation, as large as autocovariances (n_lags + 1,) have it."""
+    variance, lagged = float(max(covariance[0], 1e-12)), covariance[1:]
+    powers = phi ** np.arange(1, len(covariance))
+    fading = float(np.clip(powers @ lagged / (powers @ powers), 0.0, variance))
+    return ChannelNoise(phi=phi, fading=fading, white=max(variance - fading, 1e-3 * variance))
 
 
 def by_channel(trials: Sequence[Trial], level: Callable[[FloatArray], float]) -> FloatArray:

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...phrases import listed
-from ..bench import wave_groups, winds
 from ..bench.hypotheses import n_terms
+from ..bench.inputs import unsteady
 from ..evidence.leftover import NOTICED, Leftover
 from ..held_out.gain import MOST, Gain
 from ..held_out.together import Together
@@ -193,8 +193,8 @@ class Belief:
         """Whether wind or waves among the causes leave an error that is noise only if gusts or groups make it, and
         these are too small for it: a wind that is found excuses what it leaves."""
         before, after = self.chi2
-        blows = any(winds.blows(one.effect) or wave_groups.drifts(one.effect) for one in self.causes)
-        return blows and self.leftover.left_open > GUSTS_LEAVE and after > OF_WIND * before
+        excuse = any(unsteady(cause.effect) for cause in self.causes)
+        return excuse and self.leftover.left_open > GUSTS_LEAVE and after > OF_WIND * before
 
     @property
     def _bent(self) -> str:

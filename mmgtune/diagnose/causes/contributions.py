@@ -18,8 +18,8 @@ from ...backends import STATES
 from ...effects import SensorEffect
 from ...fitting.least_squares import fit_offsets
 from ...trial import Trial
-from ..bench import wave_groups, winds
 from ..bench.hypotheses import Hypothesis
+from ..bench.inputs import unsteady
 from ..bench.of_hull import AS_WELL, explained_by_hull
 from ..bench.workbench import Point, Workbench
 from ..evidence.leftover import Leftover, leftover
@@ -361,8 +361,8 @@ def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, size
     for other in found.causes:
         if other is cause or other.by or not set(other.names) <= set(gone):
             continue
-        weather = winds.blows(other.effect) or wave_groups.drifts(other.effect)
-        times = 1.0 if weather else TWICE  # intervals allow for gusts and groups, which are the same without the cause
+        # Intervals allow for gusts and groups, which are the same without the cause.
+        times = 1.0 if unsteady(other.effect) else TWICE
         wrong = any(_is_beyond(sizes[name], values[name], times) for name in other.names)
         size = size_of(bench, found.final, other)
         if not wrong or not size > 0.0:
