@@ -15,12 +15,12 @@ from pathlib import Path
 import numpy as np
 
 from .backends import BACKENDS, get_backend
-from .backends.compiled import cores
 from .errors import MmgtuneError, OptionError
 from .model import Model
 from .objective import cases_of, make_objective
 from .profile import load_profile
 from .resources import folder, profile_names, trial_set_names
+from .threads import cores
 from .trial import load_trials
 
 PACKAGES = ("numpy", "scipy", "numba", "cma", "pandas", "pyarrow", "pyproj", "matplotlib", "jinja2")

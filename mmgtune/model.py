@@ -107,14 +107,24 @@ class Model:
             for tie in self.ties:
                 if tie.to in names and tie.name not in names:
                     theta[self.rows[tie.name]] = tie.ratio * theta[self.rows[tie.to]]
-        for effect in self.acting(CoefficientsEffect):
-            e = self.parameters(effect, theta)
-            if effect.is_absent(e):
+        for effect, own, nulls in self._on_coefficients:
+            if len(own) and np.all(theta[own] == nulls):
                 continue
+            e = self.parameters(effect, theta)
             now = {name: theta[row] for name, row in self.rows.items()}
             for name, value in effect.function(now, e).items():
                 theta[self.rows[name]] = value
         return theta
+
+    @cached_property
+    def _on_coefficients(self) -> list[tuple[CoefficientsEffect, list[int], FloatArray]]:
+        """Effects on coefficients, with the rows of their parameters and where these stand when it is absent (n, 1)."""
+        found = []
+        for effect in self.acting(CoefficientsEffect):
+            rows = dict(zip(effect.params._fields, self.fields(effect), strict=True))
+            nulls = [(row, null) for name, null in effect.nulls.items() for row in rows[name]]
+            found.append((effect, [row for row, _ in nulls], np.array([[null] for _, null in nulls])))
+        return found
 
     def rows_of(self, names: Sequence[str]) -> list[int]:
         """Rows of numbers by their names.  Raises ProfileError for a name that no number has."""

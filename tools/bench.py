@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 
 from mmgtune.backends import Integrator, get_backend, pad
-from mmgtune.backends.compiled import cores
 from mmgtune.backends.twins import jax_module
 from mmgtune.files import write_text
 from mmgtune.fitting.cmaes import _strategy
@@ -43,6 +42,7 @@ from mmgtune.options import HybridOptions, LearnOptions
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile
 from mmgtune.scores import score
+from mmgtune.threads import cores
 from mmgtune.trial import load_trials, write_trial
 from tools.generate_voyage import make_voyage
 

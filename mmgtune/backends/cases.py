@@ -113,7 +113,7 @@ def pad(
 class Integrator:
     """A fixed-step method in which each stage needs only the one before.
 
-    name      "rk4", or "euler" (the paper's)
+    name      "rk4", "heun" (half the work, of second order), or "euler" (the paper's)
     substeps  steps between two samples; inputs are interpolated linearly where the method looks between samples
     """
 
@@ -122,7 +122,7 @@ class Integrator:
 
     def __post_init__(self) -> None:
         """Raises ValueError for an unknown name or a count of substeps that is none."""
-        if self.name not in ("euler", "rk4") or self.substeps != int(self.substeps) or self.substeps < 1:
+        if self.name not in ("euler", "heun", "rk4") or self.substeps != int(self.substeps) or self.substeps < 1:
             raise ValueError(f"no integrator '{self.name}' with {self.substeps} substeps")
 
     @property
@@ -130,6 +130,8 @@ class Integrator:
         """Position of each stage within the step, and its share in the result: (n_stages,) each."""
         if self.name == "rk4":
             return np.array([0.0, 0.5, 0.5, 1.0]), np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
+        if self.name == "heun":
+            return np.array([0.0, 1.0]), np.array([0.5, 0.5])
         return np.array([0.0]), np.array([1.0])
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -16,9 +15,10 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..effects import Effect, LagEffect
-from ..errors import OptionError, Problem, brief, reason
+from ..errors import OptionError, Problem, reason
 from ..model import Model
 from ..physics.quantities import State
+from ..threads import cores, free_cores
 from .cases import Cases, Integrator, LaneResult, finish, lanes_of
 from .kernel.source import functions_of, kernel_source
 from .kernel.text import IN_KERNEL, N_STATES, WIDTH, acting_in
@@ -42,25 +42,8 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mmgtune")
 
 
-@lru_cache(maxsize=1)
-def cores() -> int:
-    """Cores this process may use: MMGTUNE_THREADS of them where that is set, for many processes side by side.
-
-    Raises OptionError where that is no number of cores.
-    """
-    allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    told = os.environ.get("MMGTUNE_THREADS", "").strip()
-    if not told:
-        return allowed
-    if not re.fullmatch("0*[1-9][0-9]{0,8}", told):
-        what, fix = f"MMGTUNE_THREADS is {brief(told)}, not a number of cores", "set it to 1 or more, or unset it"
-        raise OptionError(Problem(what, "environment", "it says how many cores this process may use", fix))
-    return min(allowed, int(told))
-
-
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_pool.cache_clear)  # threads stay behind in the parent
-    os.register_at_fork(after_in_child=cores.cache_clear)  # a child may be told another number
 
 
 def _compiling() -> ModuleType:
@@ -309,7 +292,7 @@ def _share_out(
     kernel: Callable[..., None], n_blocks: int, work: float, read: tuple[object, ...], written: tuple[object, ...]
 ) -> None:
     """Run a kernel over all blocks, on several cores where that is worth it; work in stages of lane-steps."""
-    if work < WORTH_A_THREAD or n_blocks == 1 or cores() == 1:
+    if work < WORTH_A_THREAD or n_blocks == 1 or free_cores() == 1:
         kernel(*read, 0, n_blocks, *written)
         return
     cuts = np.linspace(0, n_blocks, min(n_blocks, 4 * cores()) + 1).astype(int)

@@ -2,8 +2,8 @@
 
 A run is a function of profile, trials, options and versions.  What takes its time are solves of least squares and
 searches; each is noted in a line of a file as soon as it is done, with what it was asked.  A resumed run begins at the
-beginning and takes from the journal what is there, in order; so it comes to the same numbers, bit for bit.  Nothing in
-the file is executed on loading.
+beginning and takes from the journal what is there, in order; so it comes to the same numbers, bit for bit.  Of pieces
+of work done side by side each has an order of its own.  Nothing in the file is executed on loading.
 """
 
 from __future__ import annotations
@@ -14,11 +14,14 @@ import hashlib
 import inspect
 import json
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from functools import partial
+from itertools import takewhile
 from pathlib import Path
+from threading import Lock
 from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 
 import numpy as np
@@ -27,12 +30,17 @@ from ..errors import MmgtuneError, OptionError, OutputError, Problem
 from ..files import cannot_write, write_text
 from ..run_files import CHECKPOINT, JOURNAL
 from ..run_folders import remove_kept
+from ..threads import cores, on_threads
 from .checkpoint import differing, nothing_to_resume
 
-SCHEMA = 2
+SCHEMA = 3
+
+AMONG = "among"
+"""Key of entries of work that was done side by side with other work."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
+T = TypeVar("T")
 
 
 class Journal:
@@ -50,7 +58,9 @@ class Journal:
         self.stop = stop
         self._noted: list[dict[str, Any]] = []
         self._next = 0
+        self._times = 0
         self._file: Any = None
+        self._one_by_one = Lock()
 
     def begin(self, resume: bool) -> None:
         """Read the journal that is there, or begin a new one.
@@ -88,23 +98,62 @@ class Journal:
         """
         if self._next < len(self._noted):
             entry = self._noted[self._next]
-            if (entry["what"], entry["asked"]) == (what, asked):
+            if (entry["what"], entry["asked"]) == (what, asked) and AMONG not in entry:
                 self._next += 1
                 return recall(entry["result"])
-            self._forget()  # the run went another way from here; what follows is of no use
+            if not self.stop():
+                self._keep(self._noted[: self._next])  # the run went another way from here; what follows is of no use
         result = do()
         if not self.stop():
-            entry = {"what": what, "asked": asked, "result": note(result)}
-            self._append(_line(entry))
-            self._noted.append(entry)
+            self._note({"what": what, "asked": asked, "result": note(result)})
             self._next += 1
         return result
 
-    def _forget(self) -> None:
-        self._noted = self._noted[: self._next]
-        lines = self._lines()[: 1 + self._next]
+    @contextmanager
+    def apart(self, n: int) -> Iterator[list[Strand]]:
+        """Journals of n pieces of work done side by side next, within this context."""
+        self._times += 1
+        first = self._next
+        there = self._side_by_side(first)
+        if first < len(self._noted) and _times(self._noted[first]) != self._times:
+            if not self.stop():
+                self._keep(self._noted[:first])
+            there = []
+        marks = [[self._times, k] for k in range(n)]
+        try:
+            yield [Strand(self, mark, [entry for entry in there if entry[AMONG] == mark]) for mark in marks]
+        finally:
+            self._next = first + len(self._side_by_side(first))
+
+    def _side_by_side(self, first: int) -> list[dict[str, Any]]:
+        """Entries from that one on of work done side by side at one time."""
+        noted = self._noted[first:]
+        times = _times(noted[0]) if noted else 0
+        return list(takewhile(lambda entry: times and _times(entry) == times, noted))
+
+    def without(self, entries: Sequence[dict[str, Any]]) -> None:
+        """Forget entries of a piece of work done side by side with others, and what was noted after all of these."""
+        with self._one_by_one:
+            gone = {id(entry) for entry in entries}
+            first = next(k for k, entry in enumerate(self._noted) if _times(entry) == _times(entries[0]))
+            those = self._side_by_side(first)
+            self._keep([*self._noted[:first], *(entry for entry in those if id(entry) not in gone)])
+
+    def note(self, entry: dict[str, Any]) -> None:
+        """Note an entry of work done side by side."""
+        with self._one_by_one:
+            self._note(entry)
+
+    def _note(self, entry: dict[str, Any]) -> None:
+        self._append(_line(entry))
+        self._noted.append(entry)
+
+    def _keep(self, entries: list[dict[str, Any]]) -> None:
+        """Forget all other entries."""
+        head = self._lines()[:1]
         self.close()
-        write_text(self.path, "".join(line + "\n" for line in lines))
+        self._noted = entries
+        write_text(self.path, "".join([*(line + "\n" for line in head), *map(_line, entries)]))
 
     def _append(self, line: str) -> None:
         try:
@@ -139,7 +188,61 @@ class Journal:
             self._file = None
 
 
-_ACTIVE: ContextVar[Journal | None] = ContextVar("journal", default=None)
+@dataclass
+class Strand:
+    """The journal of one of several pieces of work that are done side by side.
+
+    journal  of the run
+    among    how many times work was done side by side until then, and which of these pieces it is
+    noted    entries of it that are there
+    """
+
+    journal: Journal
+    among: list[int]
+    noted: list[dict[str, Any]]
+    _next: int = 0
+
+    def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:
+        """As ``Journal.remember``."""
+        if self._next < len(self.noted):
+            entry = self.noted[self._next]
+            if (entry["what"], entry["asked"]) == (what, asked):
+                self._next += 1
+                return recall(entry["result"])
+            if not self.journal.stop():
+                self.journal.without(self.noted[self._next :])
+                del self.noted[self._next :]
+        result = do()
+        if not self.journal.stop():
+            entry = {AMONG: self.among, "what": what, "asked": asked, "result": note(result)}
+            self.journal.note(entry)
+            self.noted.append(entry)
+            self._next += 1
+        return result
+
+
+_ACTIVE: ContextVar[Journal | Strand | None] = ContextVar("journal", default=None)
+
+
+def side_by_side(pieces: Sequence[Callable[[], T]]) -> list[T]:
+    """Results of pieces of work that do not need each other, in their order; done on several cores where there are.
+
+    Each is remembered by itself where a journal is kept.  What is done within one of them is done one by one.
+    """
+    journal = _ACTIVE.get()
+    if isinstance(journal, Strand) or len(pieces) < 2:
+        return [piece() for piece in pieces]
+    with journal.apart(len(pieces)) if journal else contextlib.nullcontext([None] * len(pieces)) as strands:
+        return on_threads([partial(_remembering, own, one) for own, one in zip(strands, pieces, strict=True)], cores())
+
+
+def _remembering(journal: Strand | None, piece: Callable[[], T]) -> T:
+    """The result of a piece of work that is noted there."""
+    token = _ACTIVE.set(journal)
+    try:
+        return piece()
+    finally:
+        _ACTIVE.reset(token)
 
 
 @contextmanager
@@ -264,7 +367,17 @@ def _line(entry: dict[str, Any]) -> str:
 def _entry(line: str) -> dict[str, Any] | None:
     """The entry of a line; None where it is not as it was written."""
     noted, _, text = line.partition(" ")
-    return _parsed(text) if noted == _sum(text) else None
+    entry = _parsed(text) if noted == _sum(text) else None
+    if entry is None or not {"what", "asked", "result"} <= set(entry):
+        return None
+    among = entry.get(AMONG, [0, 0])
+    return entry if isinstance(among, list) and [type(number) for number in among] == [int, int] else None
+
+
+def _times(entry: dict[str, Any]) -> int:
+    """How many times work was done side by side, this included, when an entry of such work was noted; 0 of other."""
+    among = entry.get(AMONG)
+    return int(among[0]) if among else 0
 
 
 def _sum(text: str) -> str:

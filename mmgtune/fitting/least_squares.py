@@ -8,13 +8,14 @@ and left again when the gradient says so.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..backends import Integrator
 from ..displayed import Brief
 from ..first_states import LITTLE, ROUNDS
 from .bounded import bounded_step
@@ -115,6 +116,7 @@ def solve(
     beliefs: tuple[FloatArray, FloatArray] | None = None,
     trusting: bool = False,
     hopeless: float = math.inf,
+    slopes: Integrator | None = None,
 ) -> list[LeastSquaresResult]:
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
@@ -136,9 +138,10 @@ def solve(
                     their own)
     hopeless        a trusting start also ends, after its first steps, where all that the linear problem promises would
                     leave a larger objective than this
+    slopes          integrator of the derivatives, until a step by them gains nothing; the problem's own where None
     Returns a result per start, never above what it began with.
     """
-    aim = _Minimised(problem, len(starts), ridge, anchor, beliefs, whiten)
+    aim = _Minimised(problem, len(starts), ridge, anchor, beliefs, whiten, slopes)
     under_way = _Starts(aim, starts, tolerance, trusting, hopeless)
     for _ in range(max_iterations):
         if stop() or not under_way.advance():
@@ -198,16 +201,22 @@ class _Minimised:
         anchor: FloatArray | None,
         beliefs: tuple[FloatArray, FloatArray] | None,
         whiten: Callable[[FloatArray], FloatArray] | None,
+        slopes: Integrator | None,
     ):
         self.problem, self._ridge, self._whiten = problem, ridge, whiten
+        self.slopes = None if slopes == problem.integrator else slopes
         self._centre = np.zeros(n_targets) if anchor is None else anchor
         self._beliefs = beliefs
         self._believed = np.zeros((n_targets, n_targets)) if beliefs is None else beliefs[0].T @ beliefs[0]
         self._likely = self._centre if beliefs is None else beliefs[1]
 
-    def residuals(self, unit: FloatArray, offsets: FloatArray) -> FloatArray:
-        """(n_residuals, n_points), whitened where that was asked for."""
-        found = self.problem.residuals(unit, offsets).T
+    def residuals(self, unit: FloatArray, offsets: FloatArray, closely: bool = True) -> FloatArray:
+        """(n_residuals, n_points), whitened where that was asked for.
+
+        closely  of the problem's own integrator, not of that of the derivatives
+        """
+        problem = self.problem if closely or self.slopes is None else self.problem.with_integrator(self.slopes)
+        found = problem.residuals(unit, offsets).T
         return found if self._whiten is None else self._whiten(found)
 
     def cost(self, unit: FloatArray, offsets: FloatArray) -> FloatArray:
@@ -222,12 +231,14 @@ class _Minimised:
             own = own + np.sum((self._beliefs[0] @ (unit - self._likely[:, None])) ** 2, axis=0)
         return np.asarray(own)
 
-    def models(self, z: FloatArray, d: FloatArray, holding: bool) -> list[Quadratic]:
+    def models(self, z: FloatArray, d: FloatArray, holding: bool, closely: bool) -> list[Quadratic]:
         """The quadratic models around points z (n_targets, n_points), d (n_cases, n_points, 6).
 
         Where a neighbour diverged the derivative counts as flat.
+
+        closely  by derivatives of the problem's own integrator, whatever others are allowed
         """
-        residuals, jacobians, by_offset = self.problem.jacobians(z, d)
+        residuals, jacobians, by_offset = self.problem.jacobians(z, d, None if closely else self.slopes)
         jacobians, by_offset = flat_where_lost(jacobians), flat_where_lost(by_offset)
         if self._whiten is not None:
             residuals, jacobians, by_offset = (
@@ -290,6 +301,7 @@ class _Starts:
         self._value = self._J + aim.penalty(self._z, self._d)
         self._models: dict[int, Quadratic] = {}
         self._told = np.zeros(n, dtype=bool)  # whether the last derivatives foretold what came
+        self._closely = np.full(n, aim.slopes is None)  # whether derivatives are of the problem's own integrator
         self._damping = np.full(n, 1e-3)
         self._iterations = np.zeros(n, dtype=int)
         self._quiet = np.zeros(n, dtype=int)
@@ -340,10 +352,11 @@ class _Starts:
 
     def _around(self, rows: IntArray) -> list[Quadratic]:
         """The quadratic models: of derivatives taken here, or of the last ones where these predicted the step well."""
-        anew = rows[~self._told[rows]]
-        if len(anew):
-            made = self._aim.models(self._z[:, anew], self._d[:, anew], self._trusting)
-            self._models.update(zip(anew.tolist(), made, strict=True))
+        for closely in (False, True):
+            anew = rows[~self._told[rows] & (self._closely[rows] == closely)]
+            if len(anew):
+                made = self._aim.models(self._z[:, anew], self._d[:, anew], self._trusting, closely)
+                self._models.update(zip(anew.tolist(), made, strict=True))
         again = rows[self._told[rows]]
         if len(again):
             offsets = self._d[:, again]
@@ -368,8 +381,28 @@ class _Starts:
                 offsets[:, i, 0, k] = at.offsets(unit[:, i, 0, k] - self._z[:, row])
         if last.all():
             return _Tried(unit[:, :, :1], offsets[:, :, :1])
-        _accelerate(self._aim.residuals, models, self._z[:, rows], self._d[:, rows], self._damping[rows], unit, offsets)
-        return _Tried(unit, offsets)
+        tried = _Tried(unit, offsets)
+        for closely in (False, True):
+            if len(these := np.flatnonzero(self._closely[rows] == closely)):
+                self._bent(closely, these, rows[these], [models[i] for i in these], tried)
+        return tried
+
+    def _bent(self, closely: bool, these: IntArray, rows: IntArray, models: list[Quadratic], tried: _Tried) -> None:
+        """Write bent steps beside the straight ones of ``these`` of the starts tried, which are in ``rows``."""
+        z, d, damping = self._z[:, rows], self._d[:, rows], self._damping[rows]
+        base = [model.residuals for model in models]
+        if not closely:
+            base = list(self._aim.residuals(z, d, closely=False).T)
+        step, shift = tried.unit[:, these, 0] - z[:, :, None], tried.offsets[:, these, 0] - d[:, :, None]
+        near = (z[:, :, None] + SHARE_AHEAD * step).reshape(len(z), -1)
+        moved = (d[:, :, None] + SHARE_AHEAD * shift).reshape(len(d), near.shape[1], 6)
+        runs = self._aim.residuals(near, moved, closely)
+        bends = _bends(runs.reshape(len(runs), *step.shape[1:]), base, models, damping, step, shift)
+        tried.unit[:, these, 1], tried.offsets[:, these, 1] = tried.unit[:, these, 0], tried.offsets[:, these, 0]
+        for i, k, bend, bend_shift in bends:
+            row = these[i]
+            tried.unit[:, row, 1, k] = np.clip(tried.unit[:, row, 0, k] + 0.5 * bend, 0.0, 1.0)
+            tried.offsets[:, row, 1, k] = models[i].limited(tried.offsets[:, row, 0, k] + 0.5 * bend_shift)
 
     def _taken(self, i: int, row: int, tried: _Tried, costs: FloatArray, values: FloatArray) -> float:
         """Go to the best of the points tried if it is better, and choose the next damping; the gain."""
@@ -377,7 +410,9 @@ class _Starts:
         best = int(np.argmin(values))
         gain = float(self._value[row] - values[best])
         if not gain > 0.0:
-            self._damping[row] *= 1e3
+            if self._closely[row]:
+                self._damping[row] *= 1e3
+            self._closely[row] = True
             return gain
         self._further[row] = max(self._further[row] - gain, 0.0)
         bent, k = divmod(best, len(DAMPINGS))
@@ -409,34 +444,32 @@ def _squares(residuals: FloatArray) -> FloatArray:
     return np.where(np.isfinite(found), found, np.inf)
 
 
-def _accelerate(
-    residuals_of: Callable[[FloatArray, FloatArray], FloatArray],
-    linear: list[Quadratic],
-    z: FloatArray,
-    d: FloatArray,
+def _bends(
+    runs: FloatArray,
+    base: Sequence[FloatArray],
+    linear: Sequence[Quadratic],
     damping: FloatArray,
-    tried: FloatArray,
-    moved: FloatArray,
-) -> None:
-    """Bend each straight step tried[:, :, 0], moved[:, :, 0] along the valley it starts in, into [:, :, 1].
+    step: FloatArray,
+    shift: FloatArray,
+) -> Iterator[tuple[int, int, FloatArray, FloatArray]]:
+    """Bends of straight steps along the valley they start in: number of the start, and of the damping, the bend
+    (n_targets,) and that of the offsets (n_cases, 6).
+
+    runs    (n_residuals, n_starts, n_dampings) residuals at SHARE_AHEAD of the steps, and (n_residuals,) at the starts
+    step    (n_targets, n_starts, n_dampings)
+    shift   (n_cases, n_starts, n_dampings, 6) of the offsets
 
     Coefficients that nearly trade against each other make valleys long, narrow and curved.  The second derivative of
     the residuals along a step, from one more run at a tenth of it, gives the bend (geodesic acceleration: Transtrum &
     Sethna 2012, arXiv:1201.5885).  A bend that is no smaller than the step is not to be trusted and left out.
     """
-    step, shift = tried[:, :, 0] - z[:, :, None], moved[:, :, 0] - d[:, :, None]
-    near = (z[:, :, None] + SHARE_AHEAD * step).reshape(len(z), -1)
-    runs = residuals_of(near, (d[:, :, None] + SHARE_AHEAD * shift).reshape(len(d), near.shape[1], 6))
-    runs = runs.reshape(len(runs), *step.shape[1:])
-    tried[:, :, 1], moved[:, :, 1] = tried[:, :, 0], moved[:, :, 0]
     for i, at in enumerate(linear):
         with np.errstate(invalid="ignore"):
-            ahead = (runs[:, i] - at.residuals[:, None]) / SHARE_AHEAD
+            ahead = (runs[:, i] - base[i][:, None]) / SHARE_AHEAD
             curved = (2.0 / SHARE_AHEAD) * (ahead - at.slope(step[:, i], shift[:, i]))
         for k, factor in enumerate(DAMPINGS):
             if not np.isfinite(runs[:, i, k]).all():
                 continue
             bend, bend_shift = at.bend(curved[:, k], damping[i] * factor, step[:, i, k] != 0.0)
             if np.linalg.norm(bend * at.scale) <= np.linalg.norm(2.0 * step[:, i, k] * at.scale):
-                tried[:, i, 1, k] = np.clip(tried[:, i, 0, k] + 0.5 * bend, 0.0, 1.0)
-                moved[:, i, 1, k] = at.limited(moved[:, i, 0, k] + 0.5 * bend_shift)
+                yield i, k, bend, bend_shift

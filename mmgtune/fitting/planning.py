@@ -10,10 +10,10 @@ import numpy as np
 
 from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..backends import WIDTH, get_ready_backend
-from ..backends.compiled import cores
 from ..options import FitOptions, LeaveOutOptions, SweepOptions
 from ..profile import ShipProfile
 from ..run_files import DRAWN_UP, FIT, HISTORY, LEFT_OUT, MOTIONS, PROFILE, SWEEP
+from ..threads import cores
 from ..trial import TrialSet
 from ..units import in_time
 from .amounts import of_iteration

@@ -242,26 +242,27 @@ class FitProblem:
         """
         n_candidates = unit.shape[1]
         self.counter.evaluations += n_candidates
-        beside = self._beside(unit)
         initial = self.initial(n_candidates, offsets)
+        chunk = max(WIDTH, LANES_AT_ONCE // max(len(self.cases), 1))
+        if n_candidates <= chunk and not self.terms and len(self.cases):
+            return self._simulated(unit, initial).T
+        beside = self._beside(unit)
         out = np.empty((self.n_residuals + len(beside), n_candidates))
         out[self.n_residuals :] = beside
         if not len(self.cases):
             return out.T
-        chunk = max(WIDTH, LANES_AT_ONCE // len(self.cases))
         for first in range(0, n_candidates, chunk):
             rows = slice(first, first + chunk)
-            result = self.backend.run(
-                self.model,
-                self.theta(unit[:, rows]),
-                self.cases,
-                initial=initial[:, rows],
-                integrator=self.integrator,
-                keep_residuals=True,
-            )
-            out[: self.n_residuals, rows] = result.residuals
-            out[: self.n_residuals, rows][:, result.diverged.any(axis=0)] = np.inf
+            out[: self.n_residuals, rows] = self._simulated(unit[:, rows], initial[:, rows])
         return out.T
+
+    def _simulated(self, unit: FloatArray, initial: FloatArray) -> FloatArray:
+        """Residuals of the cases (n_residuals, n_candidates), from initial states (n_cases, n_candidates, 6)."""
+        theta = self.theta(unit)
+        how: dict[str, Any] = {"initial": initial, "integrator": self.integrator, "keep_residuals": True}
+        result = self.backend.run(self.model, theta, self.cases, **how)
+        result.residuals[:, result.diverged.any(axis=0)] = np.inf
+        return result.residuals
 
     def _beside(self, unit: FloatArray) -> FloatArray:
         """Rows of the terms by the root of their weight (n_rows, n_candidates); equal candidates are run once."""
@@ -272,9 +273,11 @@ class FitProblem:
         return np.asarray(np.sqrt(self.weight) * rows[:, of.reshape(-1)])
 
     def jacobians(
-        self, unit: FloatArray, offsets: FloatArray | None = None
+        self, unit: FloatArray, offsets: FloatArray | None = None, slopes: Integrator | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residuals and their derivatives at points (n_targets, n_points) of the unit cube, by forward differences.
+
+        slopes  integrator of the derivatives, the problem's own where None
 
         -> residuals (n_points, n_rows), derivatives by target (n_points, n_rows, n_targets), and by the six initial
         offsets of the case a residual belongs to (n_points, n_rows, 6; empty where they are held).
@@ -295,18 +298,19 @@ class FitProblem:
         if self.sigma is not None:
             self._move_offsets(moved[:, :, 1 + n_moved :])
         n_lanes = n_points * n_columns
-        values = self.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
+        simulated = self if slopes is None else self.with_integrator(slopes)
+        values = simulated.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
         values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
         base = values[:, :, :1]
         with np.errstate(invalid="ignore"):
-            slopes = values[:, :, 1 : 1 + n_moved] - base
+            derivatives = values[:, :, 1 : 1 + n_moved] - base
             if self.grouped:
-                slopes = self._apart(slopes, together)
-            slopes /= steps.T[:, None, :]
+                derivatives = self._apart(derivatives, together)
+            derivatives /= steps.T[:, None, :]
             by_offset = values[:, :, 1 + n_moved :] - base
             if self.sigma is not None:
                 by_offset[:, : self.n_residuals] /= self.by_row(FORWARD * self.sigma * 1e3)
-        return base[:, :, 0], slopes, by_offset
+        return base[:, :, 0] if slopes is None else self.residuals(unit, base_offsets), derivatives, by_offset
 
     def offset_slopes(self, unit: FloatArray, offsets: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Residuals (n_rows,) and derivatives (n_rows, 6) by the offsets alone, as of ``jacobians``, at one point."""

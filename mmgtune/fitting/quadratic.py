@@ -39,6 +39,7 @@ class _Offsets:
 
     free       (n_cases, 6) which are not held
     to_end     (n_cases, 6) how far those that are held move
+    whole      (n_cases, 6, 6) halves of second derivatives, with those of what is held
     curvature  (n_cases, 6, 6) halves of second derivatives
     cross      (6 n_cases, n_targets) halves of second derivatives by offsets and targets
     by_held    (n_targets,) half of what the held ones add to the derivatives by the targets
@@ -49,6 +50,7 @@ class _Offsets:
 
     free: BoolArray
     to_end: FloatArray
+    whole: FloatArray
     curvature: FloatArray
     cross: FloatArray
     by_held: FloatArray
@@ -91,6 +93,7 @@ class _Offsets:
         return cls(
             free,
             to_end,
+            whole,
             curvature,
             cross.reshape(shape),
             to_end.reshape(-1) @ cases.cross.reshape(shape),
@@ -175,10 +178,21 @@ class Quadratic:
 
     def about(self, step: FloatArray) -> Quadratic:
         """The model with the offsets held that would leave their range after a step (n_targets,) of the targets."""
-        if not self._holding or self._own is None or self._limit is None:
+        if not self._holding or self._own is None or self._limit is None or self._holds_after(step, self._own):
             return self
-        leave = not self._own.free.all() or bool(np.any(np.abs(self._d + self._own.move(step)) > self._limit))
-        return self._again(self._damping, step) if leave else self
+        return self._again(self._damping, step)
+
+    def _holds_after(self, step: FloatArray, own: _Offsets) -> bool:
+        """Whether after a step the offsets to hold are those that are held: the others are within their range, and
+        these would go on beyond it."""
+        assert self._plain.cases is not None  # there are offsets
+        assert self._limit is not None
+        moved = own.move(step)
+        end = self._d + moved
+        if np.any(np.abs(np.where(own.free, end, 0.0)) > self._limit):
+            return False
+        slope = self._plain.cases.slope + self._plain.cases.cross @ step + (own.whole @ moved[..., None])[..., 0]
+        return not np.any(np.where(own.free, 0.0, slope * np.sign(end)) > 0.0)
 
     def _again(self, damping: float, step: FloatArray | None) -> Quadratic:
         given = (self._problem, self._d, self.residuals, self._jacobian, self._by_offset)

@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
-from ..backends.compiled import cores
 from ..backends.twins import accelerated, jax_module
 from ..displayed import Plotted
 from ..documents import finite
@@ -30,6 +29,7 @@ from ..networks.feedforward import Layers, Standards
 from ..options.choice import must_be
 from ..options.learning import EnsembleOptions
 from ..scores import TrialScore
+from ..threads import cores
 from . import records
 from .choosing import Single
 from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..arguments import ShipGiven, TrialsGiven, ship_of, trials_of
-from ..backends.compiled import cores
 from ..fitting import Plan
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions
 from ..phrases import counted
 from ..run_files import ENSEMBLE, HYBRID, LEARNING, MODEL, REPORT_HTML
+from ..threads import cores
 from ..trial import Trial
 from .hybrid_run import splits_of, times_of
 from .refitting import tuned_names

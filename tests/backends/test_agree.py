@@ -34,7 +34,7 @@ def backing(model, seconds=400):
     return pad([t], [np.column_stack([n, delta])], [initial], around=[wind])
 
 
-@pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4")])
+@pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("heun"), Integrator("rk4")])
 def test_ahead_and_astern_agree(esso_osaka, integrator):
     theta = esso_osaka.matrix(["hull.C_D"], np.linspace(0.8, 1.2, 9)[None])
     cases = backing(esso_osaka)
@@ -54,6 +54,16 @@ def test_900_steps_to_1e_9(any_model, integrator):
     cases = zigzag_like(any_model, 900 // max(integrator.substeps, len(integrator.tableau[0])))
     compiled, reference = (states(any_model, cases, theta, backend, integrator) for backend in ("compiled", "numpy"))
     assert np.max(np.abs(compiled - reference) / (1.0 + np.abs(reference))) < 1e-9
+
+
+@pytest.mark.parametrize(("name", "order"), [("euler", 1), ("heun", 2), ("rk4", 4)])
+def test_half_the_step_brings_the_error_down_by_the_order_of_the_method(suzaku, name, order):
+    t = np.arange(0.0, 400.0, 8.0)
+    controls = np.column_stack([np.full(len(t), 1.7), 0.2 + 0.0 * t])
+    cases = pad([t], [controls], [np.array([0.0, 0.0, 0.0, 3.2, 0.0, 0.0])])
+    exact = states(suzaku, cases, integrator=Integrator("rk4", 64))
+    off = [np.abs(states(suzaku, cases, integrator=Integrator(name, n)) - exact).max() for n in (4, 8)]
+    assert np.log2(off[0] / off[1]) == pytest.approx(order, abs=0.4)
 
 
 def test_every_component_is_in_a_bundled_profile():

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from mmgtune import doctor
-from mmgtune.backends.compiled import cores
 from mmgtune.cli.pipes import Piped
+from mmgtune.threads import cores
 from tests.command import run
 
 COMPILED = ("simulate", "--trials", "suzaku", "--no-report", "--out", "out")

@@ -133,7 +133,7 @@ def test_half_a_line_at_the_end_is_done_again(tmp_path, in_three):
 def test_a_journal_of_an_earlier_form_is_refused(tmp_path, in_three):
     """Its results hold no counts: read on, they ended in a TypeError."""
     head, _, rest = in_three[1].partition(b"\n")
-    earlier = head.replace(b'"schema": 2', b'"schema": 1')
+    earlier = head.replace(b'"schema": 3', b'"schema": 1')
     assert earlier != head
     (tmp_path / JOURNAL).write_bytes(earlier + b"\n" + rest)
     with pytest.raises(OptionError, match="another version of this program"):

@@ -1,11 +1,12 @@
 """Search: bounds reached exactly, seeds, replay, certificate, sweep."""
 
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
+from mmgtune.backends import Integrator
 from mmgtune.cli.sweep import summary
 from mmgtune.errors import OptionError
 from mmgtune.fitting import (
@@ -25,7 +26,7 @@ from mmgtune.fitting.cmaes import from_box, search, to_box
 from mmgtune.fitting.least_squares import solve
 from mmgtune.fitting.quadratic import Quadratic
 from mmgtune.trial import load_trials
-from tests.fitting.conftest import make_set
+from tests.fitting.conftest import NOISE, make_set
 
 pytestmark = pytest.mark.xdist_group("search")
 
@@ -388,3 +389,34 @@ def test_a_start_whose_neighbours_diverge_does_not_stop_the_others(suzaku, noisy
     ends = solve(problem, starts)
     assert np.isfinite(ends[0].J)
     assert before[0] > ends[0].J
+
+
+def test_derivatives_by_another_method_are_of_its_runs_and_residuals_of_their_own(problem):
+    unit = np.column_stack([problem.box.to_unit(problem.box.pre), np.full(len(problem.box), 0.4)])
+    own, other = (problem.with_integrator(Integrator(name)) for name in ("rk4", "euler"))
+    residuals, slopes, by_offset = own.jacobians(unit, slopes=Integrator("euler"))
+    np.testing.assert_allclose(residuals, own.jacobians(unit)[0], rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(slopes, other.jacobians(unit)[1])
+    np.testing.assert_array_equal(by_offset, other.jacobians(unit)[2])
+    assert np.abs(residuals - other.jacobians(unit)[0]).max() > 0.01
+
+
+def test_rough_derivatives_lead_to_the_same_end(problem):
+    """Where they lead nowhere, derivatives of the problem's own take their place: those of a wrong sign here."""
+    start = problem.box.to_unit(problem.box.pre)[:, None]
+    estimated = problem.estimated(np.repeat(NOISE[None], len(problem.cases), axis=0))
+    (own,) = solve(estimated, start, tolerance=0.02, trusting=True)
+    (rough,) = solve(estimated, start, tolerance=0.02, trusting=True, slopes=Integrator("euler"))
+    assert pytest.approx(own.J, abs=0.1) == rough.J
+
+    class Misled(type(estimated)):
+        def jacobians(self, unit, offsets=None, slopes=None):
+            residuals, by_target, by_offset = super().jacobians(unit, offsets, slopes)
+            return residuals, by_target * (1.0 if slopes is None else -1.0), by_offset
+
+    (misled,) = solve(Misled(**vars_of(estimated)), start, tolerance=0.02, trusting=True, slopes=Integrator("euler"))
+    assert pytest.approx(own.J, abs=0.1) == misled.J
+
+
+def vars_of(problem):
+    return {one.name: getattr(problem, one.name) for one in fields(problem)}

@@ -27,6 +27,7 @@ from ...trial.kinematics import motion_noise
 from .beliefs import Beliefs, forms, let_go
 from .noise import NoiseModel, by_channel, white
 from .runs import between, labels_of
+from .slopes import quick_slopes
 
 TOLERANCE = 0.2
 """Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""
@@ -87,6 +88,7 @@ class Workbench:
     noise     as known so far
     spreads   of values that groups of runs have of their own, by ``runs.spread_key``, in the unit cube
     held      inputs whose log looks held between updates, None where none does
+    slopes    integrator of derivatives in refits that need not be precise, None for that of the problem
     updates   samples at which each input of each trial was updated, where logs were held and are read accordingly
     stop      asked within every refit; True ends it where it is
     """
@@ -102,6 +104,7 @@ class Workbench:
     spreads: dict[str, float] = field(default_factory=dict)
     held: Held | None = None
     updates: list[list[IntArray]] | None = None
+    slopes: Integrator | None = None
     believed: Beliefs = field(default_factory=Beliefs)
     stop: Callable[[], bool] = lambda: False
 
@@ -170,6 +173,11 @@ class Workbench:
         problem = self.problem.with_targets(self.model, self.sub_box(names))
         return problem if integrator is None else problem.with_integrator(integrator)
 
+    def by_slopes(self, problem: FitProblem) -> FitProblem:
+        """A problem of this workbench, simulated as derivatives are that need not be precise."""
+        alike = problem.integrator == self.problem.integrator
+        return problem.with_integrator(self.slopes) if self.slopes and alike else problem
+
     def null(self, names: Sequence[str]) -> FloatArray:
         """(n_names,) position of the profile's values: targets at theirs, effects absent."""
         box = self.sub_box(names)
@@ -215,6 +223,7 @@ class Workbench:
             beliefs=beliefs,
             trusting=True,
             hopeless=hopeless,
+            slopes=self.by_slopes(problem).integrator if tolerance >= TOLERANCE else None,
         )
         method = problem.integrator
         further = [end.promised if math.isfinite(end.promised) else 0.0 for end in ends]
@@ -263,7 +272,11 @@ class Workbench:
 
     def integrate(self, integrator: Integrator) -> None:
         """Simulate by another method in all that follows."""
-        self.problem = self.problem.with_integrator(integrator)
+        self.problem, self.slopes = self.problem.with_integrator(integrator), None
+
+    def find_slopes(self) -> None:
+        """Take derivatives by a method that is less work, where those of the targets are nearly the same by it."""
+        self.slopes = quick_slopes(self.problem_of(self.targets), self.null(self.targets)) if self.targets else None
 
     def read_evenly(self) -> None:
         """Take what the log holds for values at its updates, between which inputs change evenly, in all that follows.

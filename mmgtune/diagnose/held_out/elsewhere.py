@@ -25,6 +25,9 @@ from ..bench.workbench import LOOSE, Point, Workbench
 FIRST = 0.4
 """Share of a held-out run on which run-specific parameters are estimated."""
 
+UNNOTICED = 0.02
+"""Fall of chi-squared that counts as none where run-specific parameters are estimated."""
+
 BESIDE = 1.5
 """Spreads beside the mean at which fits of run-specific parameters also begin."""
 
@@ -76,7 +79,16 @@ def estimated_there(bench: Workbench, point: Point, trials: Sequence[Trial]) -> 
     spread = np.array([point.spreads[spread_key(name)] for name in names])
     starts = np.clip(mean[:, None] + spread[:, None] * _around(names), 0.0, 1.0)
     beliefs = np.diag(1.0 / spread), mean
-    ends = solve(problem, starts, max_iterations=20, whiten=noise.apply, beliefs=beliefs)
+    ends = solve(
+        problem,
+        starts,
+        max_iterations=20,
+        whiten=noise.apply,
+        tolerance=UNNOTICED,
+        beliefs=beliefs,
+        trusting=True,
+        slopes=bench.slopes,
+    )
     unit = _best_of_each(problem, names, ends, noise.apply, beliefs)
     return replace(point, names=(*point.names, *names), unit=np.concatenate([point.unit, unit]))
 

@@ -41,6 +41,7 @@ def base_fit(bench: Workbench) -> Point:
 
     Initial states are estimated from the beginning: noise of the measured ones leads long runs astray.
     """
+    bench.find_slopes()
     names = bench.targets
     rng = np.random.default_rng(bench.options.seed)
     starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])

@@ -103,7 +103,7 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     if as_it_is.chi2 < MISSES * bench.problem.n_residuals or fall <= 0.0:
         return None
     asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many)]
-    linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases])
+    linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases], roughly=True)
     try:
         refitter = Refitter(bench, as_it_is, linear, Known(), enough=as_it_is.chi2 - MATTERS * fall)
         fits = Refitting(refitter, every=True).best(scores(linear, asked), quick=False)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
 from ...arrays import FloatArray
 from ...fitting.box import base_of
+from ...fitting.journal import side_by_side
 from ..bench.hypotheses import Hypothesis
 from ..bench.runs import spread_key
 from ..bench.workbench import TOLERANCE, Point, Workbench
@@ -36,6 +39,8 @@ ROUGH = 4
 
 STARTS_KEPT = 2
 """Starts of a hypothesis that go on after a first step from each."""
+
+T = TypeVar("T")
 
 SIZES = (1.0, 0.5, 2.0, 0.25)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
@@ -126,13 +131,24 @@ class Refitter:
         if self.bench.stop():
             raise Stopped
 
+    def of_each(self, pieces: Sequence[Callable[[Refitter], T]], alone: int = 1) -> list[T]:
+        """Results of pieces of work in their order, done side by side: none knows how far the others came.
+
+        alone  how many are done before, as they tell what is hopeless
+        """
+        found: list[T] = []
+        for those in (pieces[:alone], pieces[alone:]):
+            each = [replace(self, known=replace(self.known)) for _ in those]
+            found += side_by_side([partial(_going_on, piece, own) for piece, own in zip(those, each, strict=True)])
+            self.known.least = min([self.known.least, *(own.known.least for own in each)])
+        return found
+
     def renew(self, ranked: Sequence[Score]) -> None:
         """Redo the cached refits with the present noise: hopeless ones are judged by them."""
         if not self.known.good:
-            for score in ranked:
-                if score.hypothesis.names in self.known.ends:
-                    self.go_on()
-                    self.known.ends[score.hypothesis.names] = self.rough(score)
+            there = [score for score in ranked if score.hypothesis.names in self.known.ends]
+            ends = self.of_each([partial(Refitter.rough, score=score) for score in there])
+            self.known.ends.update((score.hypothesis.names, end) for score, end in zip(there, ends, strict=True))
             self.known.good = True
 
     def rough(self, score: Score) -> Point:
@@ -263,6 +279,12 @@ class Refitter:
         """Numbers that a hypothesis adds to the point: means that are not free there, and a spread."""
         there = {base_of(name) for name in self.point.names}
         return sum(base not in there for base in hypothesis.bases) + bool(hypothesis.by)
+
+
+def _going_on(piece: Callable[[Refitter], T], refitter: Refitter) -> T:
+    """What comes of a piece of work.  Raises Stopped where the caller wants no more."""
+    refitter.go_on()
+    return piece(refitter)
 
 
 def hopeless_beside(bench: Workbench, chi2: float) -> float:

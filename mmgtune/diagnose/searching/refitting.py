@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -73,21 +74,19 @@ class Refitting:
         gains = sorted((refitter.point.chi2 - end.foreseen for end in rough), reverse=True)
         enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
         left = min((end.chi2 for end in rough), default=refitter.point.chi2) - n
-        ends = []
-        for score, end in zip(chosen, rough, strict=True):
-            refitter.go_on()
+        ends = list(rough)
+        steps = MOST_STEPS if refitter.strong else ALL_STEPS
+        going = []
+        for k, (score, end) in enumerate(zip(chosen, rough, strict=True)):
             gain = refitter.point.chi2 - end.foreseen
             far = bool(score.hypothesis.by) and refitter.strong and end.chi2 - n > HOPELESS * max(left, 0.0)
             hopeless = far or end.foreseen > refitter.enough
             if not hopeless and gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
-                end = refitter.on(score, end, MOST_STEPS if refitter.strong else ALL_STEPS)
-            ends.append(end)
+                going.append(k)
+        self._continue(chosen, ends, going, steps)
         best = sorted(range(len(ends)), key=lambda k: ends[k].chi2)[:FEW] if refitter.strong else []
-        for k in best:  # where little is known the others may take for ever, and are out of the question
-            if ends[k].foreseen > refitter.enough:
-                continue
-            refitter.go_on()
-            ends[k] = refitter.on(chosen[k], ends[k], ALL_STEPS)
+        # Where little is known the others may take for ever, and are out of the question.
+        self._continue(chosen, ends, [k for k in best if ends[k].foreseen <= refitter.enough], ALL_STEPS)
         for _ in range(LONG_WAYS):
             k = min(range(len(ends)), key=lambda k: ends[k].foreseen, default=0)
             if not ends or min(end.chi2 for end in ends) - ends[k].foreseen < ENOUGH:
@@ -97,14 +96,19 @@ class Refitting:
         refitter.known.ends.update((score.hypothesis.names, end) for score, end in zip(chosen, ends, strict=True))
         return list(zip(chosen, ends, strict=True))
 
+    def _continue(self, chosen: Sequence[Score], ends: list[Point], going: Sequence[int], steps: int) -> None:
+        """Continue some of the refits, in their place among ``ends``."""
+        asked = [partial(Refitter.on, score=chosen[k], end=ends[k], steps=steps) for k in going]
+        further = self.refitter.of_each(asked, alone=0)
+        for k, end in zip(going, further, strict=True):
+            ends[k] = end
+
     def _all_rough(self, chosen: Sequence[Score]) -> list[Point]:
         """A few steps towards the best fit with each hypothesis, the likeliest first: others may be hopeless then."""
         begun = [self.refitter.known.begun.get(score.hypothesis.names, ()) for score in chosen]
         likely = np.argsort([min((end.chi2 for end in ends), default=np.inf) for ends in begun], kind="stable")
-        found: dict[int, Point] = {}
-        for k in likely.tolist():
-            self.refitter.go_on()
-            found[k] = self.refitter.rough(chosen[k])
+        ends = self.refitter.of_each([partial(Refitter.rough, score=chosen[k]) for k in likely])
+        found = dict(zip(likely.tolist(), ends, strict=True))
         return [found[k] for k in range(len(chosen))]
 
     def _ordered(self, refits: Sequence[Refit]) -> list[Refit]:

@@ -234,19 +234,19 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     """
     names = [name for h in hypotheses for name in h.bases]
     varying = [name for h in hypotheses if h.by for name in h.bases]
-    linear = linearise(bench, point, names, varying=varying)
+    linear = linearise(bench, point, names, varying=varying, roughly=True)
     ranked = scores(linear, hypotheses)
     known = Known()
     best = Refitting(Refitter(bench, point, linear, known)).best(ranked, quick=True)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
-    at_best = linear if richest is point else linearise(bench, richest, names)
+    at_best = linear if richest is point else linearise(bench, richest, names, roughly=True)
     noise = _noise_at(bench, at_best)
     if _differs(bench.noise, noise):
         bench.know(noise)
         left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0).chi2
         tolerance = unnoticed(bench, left)
         point = bench.refit(point.names, point.unit[:, None], point.offsets, tolerance=tolerance)
-        linear = linearise(bench, point, names, varying=varying)
+        linear = linearise(bench, point, names, varying=varying, roughly=True)
         ranked = scores(linear, hypotheses)
         known.outdate()
     given = _as_given(bench, point, hypotheses)
@@ -326,7 +326,7 @@ def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) 
     if not STRONG * bench.problem.n_residuals <= there.chi2 < math.inf:
         return None
     alike = [h for h in hypotheses if not h.by]
-    linear = linearise(bench, there, [name for h in alike for name in h.bases])
+    linear = linearise(bench, there, [name for h in alike for name in h.bases], roughly=True)
     ranked = scores(linear, alike)
     ranked.sort(key=lambda score: -score.score)
     return Given(there, linear, {score.hypothesis.names: score.step for score in ranked})

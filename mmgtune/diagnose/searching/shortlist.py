@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -84,9 +85,20 @@ class Shortlist:
         asked = [k for k, score in enumerate(named) if score.power > 0.0 and not known[k]]
         starts = {k: self.refitter.starts(point, named[k], SIZES) for k in asked}
         begin = self._first_by_step if self.every else self._promising
-        for k, those in begin(point, named, starts).items():
-            self.refitter.go_on()
-            ends = self.refitter.steps(point, named[k], those, FIRST if those.shape[1] > 1 else 1)
+        begun = begin(point, named, starts)
+        first = self.refitter.of_each(
+            [
+                partial(
+                    Refitter.steps,
+                    point=point,
+                    score=named[k],
+                    starts=those,
+                    iterations=FIRST if those.shape[1] > 1 else 1,
+                )
+                for k, those in begun.items()
+            ]
+        )
+        for k, ends in zip(begun, first, strict=True):
             self.refitter.known.begun[named[k].hypothesis.names] = ends
             chi2[k] = min(end.chi2 for end in ends)
         kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(ANYHOW)}

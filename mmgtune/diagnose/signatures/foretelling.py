@@ -29,7 +29,7 @@ class Foretelling:
         self._bench, self._point, self._linear = bench, point, linear
         self._null = dict(zip(names, bench.null(names), strict=True))
         self._here = self._null | dict(zip(point.names, point.unit, strict=True))
-        self._problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
+        self._problem = bench.by_slopes(bench.problem_of(names, point.integrator)).with_offsets(point.offsets)
 
     @cached_property
     def _as_it_is(self) -> FloatArray:

@@ -244,12 +244,15 @@ class Steps:
 
     moved        which name each step moves
     plus, minus  its size to either side, 0 where that side is left out
+    places       which of the places simulated shows each step to one side, then to the other; the first, as it is,
+                 where a side is left out
     ends         which of what is absent has one side only
     """
 
     moved: IntArray
     plus: FloatArray
     minus: FloatArray
+    places: IntArray
     ends: IntArray
 
     @classmethod
@@ -265,29 +268,29 @@ class Steps:
         beyond = moved >= n_free  # derivatives may look over a bound, sizes of effects may not
         plus[beyond & (at[moved] + plus > 1.0)] = 0.0
         minus[beyond & (at[moved] - minus < 0.0)] = 0.0
-        return cls(moved, plus, minus, ends)
+        taken = np.concatenate([plus, minus]) > 0.0
+        return cls(moved, plus, minus, np.where(taken, np.cumsum(taken), 0), ends)
 
     def columns(self, at: FloatArray) -> FloatArray:
-        """Places to simulate at, (n_names, 1 + 2 n_moved): as it is, then every step to one side, then to the other."""
-        n = len(self.moved)
-        found = np.repeat(at[:, None], 1 + 2 * n, axis=1)
-        found[self.moved, 1 + np.arange(n)] += self.plus
-        found[self.moved, 1 + n + np.arange(n)] -= self.minus
+        """Places to simulate at, (n_names, n_places): as it is, then every step taken."""
+        found = np.repeat(at[:, None], 1 + int(self.places.max(initial=0)), axis=1)
+        for by, places in zip((self.plus, -self.minus), np.split(self.places, 2), strict=True):
+            found[self.moved, places] += by
         return found
 
     def without_lost(self, runs: FloatArray) -> FloatArray:
-        """Residuals there (n_residuals, 1 + 2 n_moved); a run that diverged says nothing: its side is left out."""
-        n = len(self.moved)
+        """Residuals there (n_residuals, n_places); a run that diverged says nothing: its side is left out."""
         lost = np.asarray(~np.isfinite(runs).all(axis=0))
         runs[:, lost] = runs[:, :1]
-        self.plus[lost[1 : 1 + n]] = 0.0
-        self.minus[lost[1 + n :]] = 0.0
+        for by, places in zip((self.plus, self.minus), np.split(self.places, 2), strict=True):
+            by[lost[places]] = 0.0
         return runs
 
     def slopes(self, values: FloatArray) -> FloatArray:
         """(n_rows, n_moved) out of whitened residuals at ``columns``."""
-        n = len(self.moved)
-        found = values[:, 1 : 1 + n] - values[:, 1 + n :]
+        plus, minus = np.split(self.places, 2)
+        found = values[:, plus]
+        found -= values[:, minus]
         found /= np.maximum(self.plus + self.minus, 1e-300)
         return np.asarray(found)
 
@@ -298,6 +301,7 @@ def linearise(
     absent: Sequence[str] = (),
     apart: Sequence[str] = (),
     varying: Sequence[str] = (),
+    roughly: bool = False,
 ) -> Linear:
     """The problem made linear at ``point``.
 
@@ -305,11 +309,13 @@ def linearise(
     apart   parameters that are free in the point and get a signature, by their derivative, instead of being re-tuned;
             targets are re-tuned beside these no farther than their boxes let them, those at a bound inwards too
     varying parameters, free or among the absent, that trials may have values of their own of
+    roughly whether derivatives and signatures may be simulated as those of refits are
     """
     there = {base_of(name) for name in point.names}
     wanted = tuple(dict.fromkeys(name for name in absent if name not in there))
     names = (*point.names, *wanted)
-    problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
+    own = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
+    problem = bench.by_slopes(own) if roughly else own
     null = bench.null(wanted)
     at = np.concatenate([point.unit, null])
     n_free = len(point.names)
@@ -317,11 +323,12 @@ def linearise(
     runs = problem.residuals(steps.columns(at)).T
     values = bench.noise.apply(steps.without_lost(runs), out=runs)
     slopes = steps.slopes(values)
+    residual = values[:, 0] if problem is own else bench.noise.apply(own.residuals(at[:, None])[0])
     slopes *= np.array([unit_of(bench, names[i]) for i in steps.moved])
     n_moved, ends = len(steps.moved), steps.ends
     by_offset = bench.noise.apply(flat_where_lost(offset_derivatives(bench, point)))
 
-    columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
+    columns = np.column_stack([residual, slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
     plain = {
         base: np.sum(left[:, [1 + i for i, name in enumerate(names) if base_of(name) == base]], axis=1)
