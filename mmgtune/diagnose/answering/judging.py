@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...backends import STATES
+from ...fitting.journal import side_by_side
 from ...fitting.one_sided import coverage_notes, followers
 from ...hooks import Hooks
 from ...options import DiagnoseOptions
@@ -31,7 +33,7 @@ from ..held_out.unseen import Unseen
 from ..result import Diagnosis
 from ..searching.instead import instead_of_tuning
 from ..searching.refit import WORTH, Refit, kin_among
-from ..searching.search import Found, Step, rivals_of, step_of
+from ..searching.search import Found, rivals_of, step_of
 from ..signatures.intervals import Estimate, estimates
 from ..signatures.retuned import retuned, unlike_any
 from ..voyages.difference import Difference
@@ -52,6 +54,9 @@ OF_RUNS_OFF = 0.03
 AS_UNSEEN = 0.95
 """Share of what values of each run remove of the error on test trials, estimated on a part of these, from which a cause
 that is the same for all of them, and sees none, may be the cause as well."""
+
+PROMISING = 0.05
+"""Share of the best gain from which a hypothesis is held against the test trials."""
 
 MUCH_OPEN = 2.0
 """Variance that inputs leave open, over that of the noise, from which windows are advised where runs are long."""
@@ -331,6 +336,9 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
     if not found.steps:
         return []
     first = found.steps[0]
+    promising = [r for r in first.refits if r.gain >= PROMISING * first.refits[0].gain]
+    tested = side_by_side([partial(J_of, bench, r.point, test) for r in promising])
+    J_test = {id(r): J for r, J in zip(promising, tested, strict=True)}
     listed = [
         Candidate(
             r.hypothesis.tag,
@@ -338,8 +346,8 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
             r.score.score,
             r.gain,
             r.p_value,
-            J_of(bench, r.point, test) if _promising(r, first) else None,
-            r.unvisited if _promising(r, first) else "",
+            J_test.get(id(r)),
+            r.unvisited if id(r) in J_test else "",
             by=r.hypothesis.by,
         )
         for r in first.refits
@@ -349,10 +357,6 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
     return listed + [
         Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, None, None, None, by=s.hypothesis.by) for s in others
     ]
-
-
-def _promising(refit: Refit, step: Step) -> bool:
-    return refit.gain >= 0.05 * step.refits[0].gain
 
 
 def _of_kin(result: Diagnosis, found: Found) -> list[Refit]:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
 from ...arrays import FloatArray
 from ...components import effect_tag
+from ...fitting.journal import side_by_side
+from ..bench.hypotheses import Hypothesis
 from ..bench.workbench import Point
 from ..signatures.foretelling import Foretelling
 from ..signatures.linear import SMALL, inwards
 from ..signatures.screening import Score
 from .refit import ENOUGH
 from .refitter import SIZES, STRONG, Refitter
+
+T = TypeVar("T")
 
 REFITTED, TERMS_REFITTED = 11, 4
 """Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
@@ -152,16 +157,26 @@ class Shortlist:
         linear = self.refitter.given.linear if self.refitter.given else self.refitter.linear
         return Foretelling(self.refitter.bench, point, linear, [score.hypothesis for score in named])
 
+    def _side_by_side(
+        self, foretold: Callable[[Hypothesis, FloatArray], T], named: Sequence[Score], starts: Mapping[int, FloatArray]
+    ) -> list[T]:
+        """What is foretold of each of some hypotheses, by number, from its starts."""
+
+        def one(k: int) -> T:
+            self.refitter.go_on()
+            return foretold(named[k].hypothesis, starts[k])
+
+        return side_by_side([partial(one, k) for k in starts])
+
     def _first_by_step(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
     ) -> dict[int, FloatArray]:
         """Where the best step from the starts leads, by number of the hypothesis: for the hypotheses that gain most,
         and for the best scores anyhow."""
         foretelling = self._foretelling(point, (named[k] for k in starts))
+        tried = self._side_by_side(foretelling.tried, named, starts)
         led, left = {}, {}
-        for k, those in starts.items():
-            self.refitter.go_on()
-            where, chi2 = foretelling.tried(named[k].hypothesis, those)
+        for k, (where, chi2) in zip(starts, tried, strict=True):
             best = np.argsort(chi2, kind="stable")[:STARTS_BEGUN]
             led[k], left[k] = where[:, best], chi2[best[0]]
         likely = sorted(led, key=lambda k: left[k])[:LIKELY]
@@ -172,10 +187,7 @@ class Shortlist:
     ) -> dict[int, FloatArray]:
         """The starts with the largest predicted gain, by number of the hypothesis; those of the best scores anyhow."""
         foretelling = self._foretelling(point, (named[k] for k in starts))
-        least = {}
-        for k, those in starts.items():
-            self.refitter.go_on()
-            least[k] = foretelling.left(named[k].hypothesis, those)
+        least = dict(zip(starts, self._side_by_side(foretelling.left, named, starts), strict=True))
         likely = sorted(starts, key=lambda k: least[k].min())[:BEGUN]
         return {
             k: those[:, np.argsort(least[k], kind="stable")[:STARTS_BEGUN]]
