@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -29,7 +28,7 @@ from ..networks.feedforward import Layers, Standards
 from ..options.choice import must_be
 from ..options.learning import EnsembleOptions
 from ..scores import TrialScore
-from ..threads import cores
+from ..threads import cores, on_threads
 from . import records
 from .choosing import Single
 from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member
@@ -234,8 +233,8 @@ def _members(task: EnsembleTask, hooks: Hooks, kept: Kept) -> list[EnsembleMembe
 
     if accelerated():
         return [one for one in together() if one is not None]
-    with ThreadPoolExecutor(min(cores(), options.members), "member") as pool:
-        return [one for one in pool.map(alone, range(options.members)) if one is not None]
+    each = on_threads([partial(alone, k) for k in range(options.members)], cores())
+    return [one for one in each if one is not None]
 
 
 def _single(weights: Trainable) -> Any:
