@@ -201,7 +201,7 @@ def test_a_folder_that_hides_bundled_trials_is_named_once(tmp_path, monkeypatch)
     (tmp_path / "suzaku").mkdir()
     trial = load_trials(folder("trials") / "suzaku").trials["turn_p35"]
     write_trial(replace(trial, id="own"), tmp_path / "suzaku" / "own.parquet")
-    ended = run("validate", "suzaku", "suzaku", "--backend", "numpy", "--json", cwd=tmp_path)
+    ended = run("validate", "suzaku", "suzaku", "--json", cwd=tmp_path)
     assert ended.code == 0, ended.err
     assert [row["id"] for row in ended.json()["profiles"][0]["trials"]] == ["own"]
     said = f"warning: 'suzaku' is {tmp_path / 'suzaku'}, not what is bundled under that name, which is "

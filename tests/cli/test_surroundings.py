@@ -36,14 +36,14 @@ def folder(tmp_path_factory):
 
 
 def test_validate_and_simulate_say_it_once(folder):
-    validated = run("validate", "ship.toml", "ship.toml", "trials", "--backend", "numpy", cwd=folder)
+    validated = run("validate", "ship.toml", "ship.toml", "trials", cwd=folder)
     assert validated.code == 0, validated.err
-    simulated = run("simulate", "-p", "ship.toml", "--trials", "trials", "--backend", "numpy", cwd=folder)
+    simulated = run("simulate", "-p", "ship.toml", "--trials", "trials", cwd=folder)
     assert simulated.code == 0, simulated.err
     for ended in (validated, simulated):
         assert ended.err.count(f"note: {SAID}\n") == 1
         assert ended.err.count(f"note: {HIGH}\n") == 1
-    quiet = run("simulate", "-p", "suzaku", "--trials", "trials", "--backend", "numpy", cwd=folder)
+    quiet = run("simulate", "-p", "suzaku", "--trials", "trials", cwd=folder)
     assert "note:" not in quiet.err
 
 
