@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
 _MADE: list[Path] = []
 
+DEFAULT = "suzaku"
+"""The profile and the trials that commands take where none are named."""
+
 PROFILE, TRIALS = "FILE|NAME", "DIR|FILE|NAME"
 """Kinds of paths, in the help."""
 
@@ -90,6 +93,7 @@ def load(profile: str, trials: str) -> tuple[ShipProfile, TrialSet]:
 
     ship, data = load_profile(profile), load_trials(trials)
     warn_of_another_ship(ship, data)
+    _say_which_ship(profile, ship, data)
     return ship, data
 
 
@@ -102,7 +106,15 @@ def load_with_voyages(profile: str, trials: str) -> tuple[ShipProfile, TrialSet 
         return load(profile, trials)
     ship, data = load_profile(profile), load_voyages(trials)
     warn_of_another_ship(ship, data)
+    _say_which_ship(profile, ship, data)
     return ship, data
+
+
+def _say_which_ship(profile: str, ship: ShipProfile, data: TrialSet | VoyageSet) -> None:
+    """Say on stderr that the bundled ship stands for that of trials which name none."""
+    if profile == DEFAULT and not data.ship:
+        whose = f"{ship.name}, {ship.L_pp:.0f} m long, is taken for her"
+        say(f"warning: the trials do not say which ship they are of: {whose}; name her profile with --profile")
 
 
 def warn_of_another_ship(ship: HasId, data: TrialSet | VoyageSet) -> None:

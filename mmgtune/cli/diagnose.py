@@ -159,7 +159,6 @@ def _of_runs(one: ByRun) -> list[str]:
 
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """Plain-text summary of the result."""
-    from ..diagnose.signatures.retuned import in_words as in_words_of_retuned
     from ..profile.doubts import in_words
     from ..report.wording import span
     from ..run_files import CALM
@@ -177,8 +176,6 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     if result.record:
         lines.append(result.record.sentence)
     lines += [trace.sentence for trace in result.traces]
-    if result.named and (far := in_words_of_retuned(result.moved)):
-        lines.append(f"Re-tuned beside that: {far}.")
     where = f"J held out ({result.gain.words}; {result.gain.method})"
     named = result.causes and result.verdict != "unexplained" and not result.interrupted
     if named and before is not None and after is not None:

@@ -36,6 +36,7 @@ from .answering.ended import within_range
 from .answering.judging import Judge, leaves_much_open
 from .answering.jumped import beginnings_in_words, from_the_track_on, in_parts
 from .answering.jumped import in_words as jumps_in_words
+from .answering.one_form import of_one_form, tells_as_well
 from .bench.hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
 from .bench.workbench import Workbench, make_workbench
 from .causes.belief import TOLD
@@ -235,8 +236,17 @@ def _of_the_better_beginning(
     hooks: Hooks,
 ) -> tuple[Diagnosis, Found]:
     """The answer of a search; where that is unexplained or has a cause beside one that acts like it, and another may
-    have been the one to begin with, of one without the first, if its causes are believed and fit better."""
+    have been the one to begin with, of one without the first, if its causes are believed and fit better.  Where it has
+    values of each run to which a form that is the same in all runs may have led, of one without such values."""
     result, found = answered(hypotheses, ())
+    if not hooks.stop() and (tag := of_one_form(result)):
+        hooks.on_phase(f"looking again for one {tag} in all runs")
+        spreads, bench.spreads = bench.spreads, {}
+        other, others = answered([one for one in hypotheses if not one.by], ())
+        if tells_as_well(other, result):
+            return other, others
+        bench.spreads = spreads
+        result = replace(result, interrupted=other.interrupted)
     doubted = result.verdict == "unexplained" or (result.names_causes and against_its_kin(found))
     begun = doubtful_beginning(bench, found) if doubted and not hooks.stop() else []
     if not begun:

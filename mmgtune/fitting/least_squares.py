@@ -464,6 +464,8 @@ def _bends(
     Sethna 2012, arXiv:1201.5885).  A bend that is no smaller than the step is not to be trusted and left out.
     """
     for i, at in enumerate(linear):
+        if not np.isfinite(base[i]).all():  # another method diverged where the start is
+            continue
         with np.errstate(invalid="ignore"):
             ahead = (runs[:, i] - base[i][:, None]) / SHARE_AHEAD
             curved = (2.0 / SHARE_AHEAD) * (ahead - at.slope(step[:, i], shift[:, i]))

@@ -277,13 +277,20 @@ class FitProblem:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residuals and their derivatives at points (n_targets, n_points) of the unit cube, by forward differences.
 
-        slopes  integrator of the derivatives, the problem's own where None
+        slopes  integrator of the derivatives; the problem's own where None, and where that one diverges at the point
 
         -> residuals (n_points, n_rows), derivatives by target (n_points, n_rows, n_targets), and by the six initial
         offsets of the case a residual belongs to (n_points, n_rows, 6; empty where they are held).
         Steps go inwards where a point is on the upper bound.  All points and columns run as lanes of one call;
         values of different groups of cases are moved in the same lanes.
         """
+        offsets = np.repeat(self.offsets[:, None], unit.shape[1], axis=1) if offsets is None else offsets
+        if slopes is not None:
+            base, derivatives, by_offset = self.with_integrator(slopes).jacobians(unit, offsets)
+            lost = ~np.isfinite(base).all(axis=1)
+            if lost.any():
+                _, derivatives[lost], by_offset[lost] = self.jacobians(unit[:, lost], offsets[:, lost])
+            return self.residuals(unit, offsets), derivatives, by_offset
         n_targets, n_points = unit.shape
         together = self._moved_together()
         n_moved = len(together)
@@ -293,13 +300,11 @@ class FitProblem:
         columns = np.repeat(unit[:, :, None], n_columns, axis=2)
         for i, moved_here in enumerate(together):
             columns[moved_here, :, 1 + i] += steps[moved_here]
-        base_offsets = np.repeat(self.offsets[:, None], n_points, axis=1) if offsets is None else offsets
-        moved = np.repeat(base_offsets[:, :, None], n_columns, axis=2)
+        moved = np.repeat(offsets[:, :, None], n_columns, axis=2)
         if self.sigma is not None:
             self._move_offsets(moved[:, :, 1 + n_moved :])
         n_lanes = n_points * n_columns
-        simulated = self if slopes is None else self.with_integrator(slopes)
-        values = simulated.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
+        values = self.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
         values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
         base = values[:, :, :1]
         with np.errstate(invalid="ignore"):
@@ -310,7 +315,7 @@ class FitProblem:
             by_offset = values[:, :, 1 + n_moved :] - base
             if self.sigma is not None:
                 by_offset[:, : self.n_residuals] /= self.by_row(FORWARD * self.sigma * 1e3)
-        return base[:, :, 0] if slopes is None else self.residuals(unit, base_offsets), derivatives, by_offset
+        return base[:, :, 0], derivatives, by_offset
 
     def offset_slopes(self, unit: FloatArray, offsets: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Residuals (n_rows,) and derivatives (n_rows, 6) by the offsets alone, as of ``jacobians``, at one point."""

@@ -12,8 +12,9 @@ from .model import Trial
 def suggested_split(trials: Sequence[Trial]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Ids of trials to tune to, and to test on, each in the order given.
 
-    Of each kind of manoeuvre one is tested, then one to the other side, as far as the kind keeps as many to tune to;
-    so no more are tested than tune.  The test is the gentlest where there is a choice: what tunes then goes further.
+    Of each kind of manoeuvre, named or not, one is tested, then one to the other side, as far as the kind keeps as many
+    to tune to; so no more are tested than tune.  The test is the gentlest where there is a choice: what tunes then goes
+    further.
     Trials cut from one run are no test of each other, so they tune together.  Where that leaves no kind with two
     trials, the run of fewest tests, the last of those; of a single run all tune.
     """
@@ -23,7 +24,7 @@ def suggested_split(trials: Sequence[Trial]) -> tuple[tuple[str, ...], tuple[str
     kinds: dict[str, list[Trial]] = {}
     for pieces in runs.values():
         if len(pieces) == 1:
-            kinds.setdefault(pieces[0].manoeuvre, []).append(pieces[0])
+            kinds.setdefault(_kind(pieces[0]), []).append(pieces[0])
     tested: list[str] = []
     for of in kinds.values():
         tested += _tested(of)
@@ -31,6 +32,15 @@ def suggested_split(trials: Sequence[Trial]) -> tuple[tuple[str, ...], tuple[str
         tested = [trial.id for trial in min(reversed(runs.values()), key=len)]
     ids = [trial.id for trial in trials]
     return tuple(id for id in ids if id not in tested), tuple(id for id in ids if id in tested)
+
+
+def _kind(trial: Trial) -> str:
+    """The manoeuvre; where a log does not say it, whether the rudder is laid to one side or to both."""
+    if trial.manoeuvre:
+        return trial.manoeuvre
+    large = 0.5 * max(_size(trial), 1e-9)
+    sides = [bool(np.any(side * trial.delta >= large)) for side in (1.0, -1.0)]
+    return "both sides" if all(sides) else "one side"
 
 
 def _tested(trials: Sequence[Trial]) -> list[str]:

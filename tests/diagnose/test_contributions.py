@@ -522,6 +522,7 @@ def sum_of(
                 at_ends=at_ends,
                 of_one_log=k < of_one_log,
                 of_logs=k < of_logs,
+                effect=SimpleNamespace(one_of_many=tags[k] == "hull-term"),
             )
             for k in range(len(brought))
         ],
@@ -577,6 +578,11 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, left=0.03), ""),
         (sum_of(CLEAR, CLEAR, left=0.03, tags=("memory", "memory")), ""),  # one of side force and moment, more of one
         (sum_of(CLEAR, CLEAR, left=0.03, tags=("hull-term", "hull-term")), "more than noise"),
+        (sum_of(CLEAR, CLEAR, left=0.03), ""),  # noise that fades within seconds
+        (sum_of(CLEAR, CLEAR, left=0.03, removed=0.97), "more than noise"),
+        (sum_of(CLEAR, CLEAR, left=0.06), "more than noise"),
+        (sum_of(CLEAR, CLEAR, left=0.03, structured=True), "more than noise"),
+        (sum_of(CLEAR, Contribution(0.35), left=0.03), "more than noise"),
         (sum_of(*4 * [CLEAR], tags=("memory", "memory", "memory", "wind")), ""),
         (sum_of(CLEAR, CLEAR, before=1.09), "little beside noise"),
         (sum_of(CLEAR, CLEAR, before=1.12), ""),

@@ -6,9 +6,12 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.bench import workbench
+from mmgtune.diagnose.bench.hypotheses import Hypothesis
 from mmgtune.diagnose.bench.slopes import quick_slopes
 from mmgtune.diagnose.bench.workbench import TOLERANCE, make_workbench
+from mmgtune.diagnose.signatures.foretelling import Foretelling
 from mmgtune.diagnose.signatures.linear import linearise
+from mmgtune.effects import find_effect
 from mmgtune.fitting.least_squares import fit_offsets
 from mmgtune.trial import Trial, load_trials
 
@@ -60,3 +63,23 @@ def test_signatures_are_nearly_the_same_and_the_residual_is(suzaku, trials):
     off = np.linalg.norm(rough.signature - own.signature, axis=0) / np.linalg.norm(own.signature, axis=0)
     assert np.all((off > 0.0) & (off < 0.1))
     assert np.linalg.norm(rough.residual - own.residual) < 0.15 * np.linalg.norm(own.residual)
+
+
+def test_where_the_other_method_diverges_all_is_by_the_problem_s_own(suzaku, trials):
+    """A fit ended at once, and a diagnosis of the wrong ship in a LinAlgError."""
+    names = ("effects.current.north",)
+    bench = make_workbench(suzaku.profile, [every(trial, 20) for trial in trials], DiagnoseOptions(), names)
+    bench.slopes = Integrator("euler")
+    null = bench.null(bench.targets)
+    problem = bench.problem_of(bench.targets)
+    assert np.isfinite(problem.residuals(null[:, None])).all()
+    assert not np.isfinite(bench.by_slopes(problem).residuals(null[:, None])).all()
+    there = null[:, None]
+    for rough, own in zip(problem.jacobians(there, slopes=bench.slopes), problem.jacobians(there), strict=True):
+        np.testing.assert_allclose(rough, own, rtol=1e-9, atol=1e-9)
+    point = bench.refit(bench.targets, null[:, None], problem.offsets, max_iterations=0)
+    rough, own = (linearise(bench, point, names, roughly=roughly) for roughly in (True, False))
+    np.testing.assert_allclose(rough.signature, own.signature, rtol=1e-9, atol=1e-9)
+    water = Hypothesis(find_effect("current"), ("north",))
+    (left,) = Foretelling(bench, point, own, [water]).left(water, np.append(point.unit, 0.6)[:, None])
+    assert 0.0 < left < np.inf  # 0 where nothing can be told

@@ -35,6 +35,14 @@ def test_a_turn_and_a_zigzag_of_four_are_tested(trials):
     assert test == ("turn_m20", "zigzag_10")
 
 
+def test_logs_that_name_no_manoeuvre_are_told_by_their_rudder(trials):
+    """Two turns and two zigzags of a ship's log: both turns tuned, and both zigzags tested."""
+    names = ("turn_p35", "turn_m35", "zigzag_20", "zigzag_10")
+    tune, test = suggested_split([replace(trials[name], manoeuvre="") for name in names])
+    assert tune == ("turn_m35", "zigzag_20")
+    assert test == ("turn_p35", "zigzag_10")
+
+
 def test_pieces_of_a_run_stay_together(trials):
     def cut(name, run):
         return replace(trials[name], cut_from=run)

@@ -70,8 +70,11 @@ def said(answer: Answer) -> Said:
     if answer.verdict == "none":
         one = _of_none(answer)
         return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
-    astray = weighed(answer.moved) if answer.causes and answer.verdict != "interrupted" else ""
-    return Said(" ".join([apart + _of_causes(answer), *more]), astray)
+    beside = ""
+    if answer.causes and answer.verdict != "interrupted":
+        far = moved_in_words(answer.moved)
+        beside = _joined(f"Re-tuned beside that: {far}." if far else "", weighed(answer.moved))
+    return Said(" ".join([apart + _of_causes(answer), *more]), beside)
 
 
 def _where(answer: Answer) -> str:

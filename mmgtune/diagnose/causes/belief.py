@@ -63,6 +63,10 @@ A_TENTH = 0.1
 BESIDE = 0.02
 """Variance beyond noise, as a share of it, from which a sum of causes leaves more than noise."""
 
+MUCH = 0.4
+"""Share of the fall of chi-squared that must be lost without any one of the causes for a sum to leave a little more: of
+the noise of sensors that fades within seconds as much is left."""
+
 OF_MANY = 0.05
 """Share of the fall of chi-squared that must be lost without any one of three causes, where not all of them can be told
 from others, and none of which has values of each run: a third that brings less is the form of the first two, unless
@@ -138,7 +142,7 @@ class Belief:
             return f"the size of {listed(ended)} is at the end of its range"
         if self._faint and not self._told_by_one_log:
             return "all that they remove is little beside noise, and other sums would"
-        if self.rest > BESIDE and not self.explains_all:
+        if self.rest > BESIDE and not (self.explains_all or (self.rest < NOTICED and self._needs_each)):
             return "what they leave is more than noise"
         if terms > 2 and self.groups and (self.differs_by_run or _least_may_be_form(self.causes, brought)):
             return "not all of them can be told from others"
@@ -259,6 +263,14 @@ class Belief:
         """Whether the causes leave so little of the error beyond noise, on held-out trials too, that a cause whose form
         is a little off would leave as much."""
         return self.explained_share >= ALL and self.gain.share_removed >= ALL_HELD_OUT
+
+    @property
+    def _needs_each(self) -> bool:
+        """Whether causes tell all of the error on held-out trials, none of them without the others, and what is left
+        has no shape; terms of which there are many bend to what is none of theirs."""
+        told = self.gain.share_removed >= ALL_HELD_OUT and all(one.seen >= MUCH for _, one in self.contributions)
+        bends = any(one.effect and one.effect.one_of_many for one in self.causes)
+        return told and not bends and not self.leftover.structured
 
     @property
     def explains_nearly_all(self) -> bool:

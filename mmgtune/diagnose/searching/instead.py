@@ -33,6 +33,10 @@ OF_OTHERS = 1.0 / 3.0
 MATTERS = 1.0 - (1.0 - NEARLY) / OF_OTHERS
 """Share of what re-tuning removes that a cause must promise to be followed to its end: less changes no answer."""
 
+CLOSE, AS_CLOSE = 2.0, 1.1
+"""Times what re-tuning leaves that a cause may leave at most: where coefficients are off in many ways it explains much
+by chance, and leaves what re-tuning does not; and times from which down the noise decides between two."""
+
 ALSO, FAR_LESS = 0.75, 0.02
 """Share of what re-tuning removes beyond which another effect does much the same, as any does of a ship that is unlike
 her profile in many ways; and the share of what that one leaves that the best may leave then."""
@@ -104,20 +108,22 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
         return None
     asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many)]
     linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases], roughly=True)
+    ranked, least = scores(linear, asked), min(CLOSE * tuned.chi2, as_it_is.chi2 - NEARLY * fall)
+    fits: list[Refit] = []
     try:
-        refitter = Refitter(bench, as_it_is, linear, Known(), enough=as_it_is.chi2 - MATTERS * fall)
-        fits = Refitting(refitter, every=True).best(scores(linear, asked), quick=False)
+        for enough in (least, as_it_is.chi2 - MATTERS * fall):  # others matter only beside one that is to be told
+            refitting = Refitting(Refitter(bench, as_it_is, linear, Known(), enough=enough), every=True)
+            fits = sorted(refitting.best(ranked, quick=False), key=lambda fit: -fit.gain)
+            if not fits or fits[0].point.chi2 > least:
+                return None
     except Stopped:
-        return None
-    fits.sort(key=lambda fit: -fit.gain)
-    if not fits or fits[0].gain < NEARLY * fall:
         return None
     best = fits[0]
     other = next((fit for fit in fits if fit.hypothesis.tag != best.hypothesis.tag), None)
     if other and other.gain < MATTERS * fall:  # it may not have been followed to its end
         other = None
     next_gain = other.gain if other else 0.0
-    if best.point.chi2 < bench.problem.n_residuals and other is not None:
+    if best.point.chi2 < AS_CLOSE * tuned.chi2 and other is not None:
         told = best.gain - next_gain > ENOUGH
     else:
         told = fall - best.gain <= (FAR_LESS if next_gain > ALSO * fall else OF_OTHERS) * (fall - next_gain)

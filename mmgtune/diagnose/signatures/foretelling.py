@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 
 import numpy as np
 
@@ -29,12 +28,11 @@ class Foretelling:
         self._bench, self._point, self._linear = bench, point, linear
         self._null = dict(zip(names, bench.null(names), strict=True))
         self._here = self._null | dict(zip(point.names, point.unit, strict=True))
-        self._problem = bench.by_slopes(bench.problem_of(names, point.integrator)).with_offsets(point.offsets)
-
-    @cached_property
-    def _as_it_is(self) -> FloatArray:
-        """(n_residuals,) at the point itself, not whitened."""
-        return np.asarray(self._problem.residuals(np.array([*self._here.values()])[:, None])[0])
+        own = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
+        here = np.array([*self._here.values()])[:, None]
+        self._problem, self._as_it_is = bench.by_slopes(own), bench.by_slopes(own).residuals(here)[0]
+        if not np.isfinite(self._as_it_is).all():  # the other method diverges here
+            self._problem, self._as_it_is = own, own.residuals(here)[0]
 
     def _simulated(self, columns: Sequence[Mapping[str, float]]) -> tuple[FloatArray, BoolArray]:
         """Residuals with re-tuning projected out (n_rows, k), and which runs diverge."""

@@ -321,6 +321,9 @@ def linearise(
     n_free = len(point.names)
     steps = Steps.about(at, n_free, np.array([typical(bench, name) for name in wanted]), inwards(null))
     runs = problem.residuals(steps.columns(at)).T
+    if problem is not own and not np.isfinite(runs[:, 0]).all():  # the other method diverges here
+        problem = own
+        runs = problem.residuals(steps.columns(at)).T
     values = bench.noise.apply(steps.without_lost(runs), out=runs)
     slopes = steps.slopes(values)
     residual = values[:, 0] if problem is own else bench.noise.apply(own.residuals(at[:, None])[0])

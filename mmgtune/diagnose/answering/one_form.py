@@ -1,0 +1,38 @@
+"""Values of an effect that differ from run to run, where a form of it that is the same in all runs tells as much.
+
+A blade that falls behind its indicator the more, the larger the angle, is a gain of the rudder that differs between
+turns of 35° and zigzags of 10°: values of each run bend to it, and say nothing of the next run.
+"""
+
+from __future__ import annotations
+
+from ..result import Diagnosis
+
+AS_WELL = 0.95
+"""Share of what values of each run remove of the error on test trials, estimated on a part of these, from which a form
+that is the same in all runs, and sees none of them, tells these as well."""
+
+
+def of_one_form(result: Diagnosis) -> str:
+    """Tag of the effect of a single cause with values of each run, where a richer form of it, with one value for all,
+    tells the test trials as well; "" where not."""
+    if not result.names_causes or len(result.causes) != 1:
+        return ""
+    (cause,) = result.causes
+    if cause.runs is None:
+        return ""
+    own = set(cause.runs.variant)
+    forms = [one for one in result.candidates if one.effect == cause.tag and not one.by and own < set(one.parameters)]
+    told = max((_told(result, one.J_test) for one in forms), default=0.0)
+    return cause.tag if told > 0.0 and told >= AS_WELL * _told(result, result.gain.J[1]) else ""
+
+
+def tells_as_well(other: Diagnosis, result: Diagnosis) -> bool:
+    """Whether causes are named and tell the test trials as well, once values of each run were not looked for."""
+    return other.names_causes and _told(other, other.gain.J[1]) >= AS_WELL * _told(result, result.gain.J[1])
+
+
+def _told(result: Diagnosis, J: float | None) -> float:
+    """Share of J on test trials that what leaves this much removes; 0 where it was not measured."""
+    before = result.gain.J[0]
+    return 1.0 - J / before if before and J is not None else 0.0

@@ -1,0 +1,77 @@
+"""Values of each run to which a form of the same effect that is the same in all runs leads."""
+
+import importlib
+from types import SimpleNamespace
+
+import pytest
+
+from mmgtune.diagnose.answering.one_form import of_one_form, tells_as_well
+
+run = importlib.import_module("mmgtune.diagnose.run")  # the package has a function of a like name
+
+
+def answer(after=0.05, *, runs=True, candidates=(), named=True, n=1):
+    """What the rule sees of an answer of a gain of each run."""
+    cause = SimpleNamespace(tag="rudder-gain", runs=SimpleNamespace(variant=("factor",)) if runs else None)
+    gain = SimpleNamespace(J=(5.0, after))
+    return SimpleNamespace(names_causes=named, causes=(cause,) * n, gain=gain, candidates=candidates)
+
+
+def form(J_test, parameters=("factor", "curve"), effect="rudder-gain", by=""):
+    return SimpleNamespace(effect=effect, parameters=parameters, by=by, J_test=J_test)
+
+
+@pytest.mark.parametrize(
+    ("given", "tag"),
+    [
+        ({"candidates": [form(0.2)]}, "rudder-gain"),
+        ({"candidates": [form(None), form(0.2)]}, "rudder-gain"),
+        ({"candidates": [form(0.4)]}, ""),  # it tells test trials less well
+        ({"candidates": [form(0.2, ("factor",))]}, ""),  # one gain for all is no form of what differs
+        ({"candidates": [form(0.2, by="trial")]}, ""),
+        ({"candidates": [form(0.2, effect="loading")]}, ""),
+        ({"candidates": [form(0.2)], "runs": False}, ""),
+        ({"candidates": [form(0.2)], "named": False}, ""),
+        ({"candidates": [form(0.2)], "n": 2}, ""),
+        ({}, ""),
+    ],
+)
+def test_a_form_that_is_the_same_in_all_runs_is_looked_for(given, tag):
+    assert of_one_form(answer(**given)) == tag
+
+
+def test_without_test_trials_nothing_is_told():
+    one = answer(candidates=[form(None)])
+    one.gain.J = (None, None)
+    assert of_one_form(one) == ""
+    assert not tells_as_well(answer(0.4, runs=False), answer(0.05))
+    assert tells_as_well(answer(0.2, runs=False), answer(0.05))
+    assert not tells_as_well(answer(0.2, runs=False, named=False), answer(0.05))
+
+
+@pytest.mark.parametrize(("after", "taken"), [(0.2, True), (0.6, False)])
+def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken):
+    """A blade that lags by up to 15 % at 35 deg was a gain of each run, 0.87 to 0.97, which no extended profile has."""
+    first, second = answer(candidates=[form(0.2)]), answer(after, runs=False)
+    asked = []
+
+    def answered(hypotheses, left_out):
+        asked.append([one.by for one in hypotheses])
+        bench.spreads = {"found": len(asked)}
+        return (first, "first") if len(asked) == 1 else (second, "second")
+
+    for one in (first, second):
+        one.verdict, one.interrupted = "found", False
+    bench = SimpleNamespace(spreads={})
+    known = [SimpleNamespace(by=by, tag="rudder-gain") for by in ("", "trial", "group")]
+    said = []
+    hooks = SimpleNamespace(stop=lambda: False, on_phase=said.append)
+    with (
+        mock.patch.object(run, "replace", lambda one, **_: one),
+        mock.patch.object(run, "against_its_kin", lambda _: False),
+    ):
+        found = run._of_the_better_beginning(bench, answered, known, hooks)
+    assert found == ((second, "second") if taken else (first, "first"))
+    assert asked == [["", "trial", "group"], [""]]
+    assert bench.spreads == {"found": 2 if taken else 1}  # those of what is answered
+    assert said == ["looking again for one rudder-gain in all runs"]
