@@ -66,11 +66,9 @@ def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken
     known = [SimpleNamespace(by=by, tag="rudder-gain") for by in ("", "trial", "group")]
     said = []
     hooks = SimpleNamespace(stop=lambda: False, on_phase=said.append)
-    with (
-        mock.patch.object(run, "replace", lambda one, **_: one),
-        mock.patch.object(run, "against_its_kin", lambda _: False),
-    ):
-        found = run._of_the_better_beginning(bench, answered, known, hooks)
+    monkeypatch.setattr(run, "replace", lambda one, **_: one)
+    monkeypatch.setattr(run, "against_its_kin", lambda _: False)
+    found = run._of_the_better_beginning(bench, answered, known, hooks)
     assert found == ((second, "second") if taken else (first, "first"))
     assert asked == [["", "trial", "group"], [""]]
     assert bench.spreads == {"found": 2 if taken else 1}  # those of what is answered
