@@ -200,7 +200,7 @@ def test_two_days_of_several_runs_are_told_apart_by_day(tmp_path):
     result = diagnose(load_profile("suzaku"), replace(trials, trials=of_day), options)
     (cause,) = result.causes
     assert (cause.runs.by, cause.runs.variant) == ("group", ("north", "east"))
-    assert "The current differed from group to group: 0.14 to 0.32 m/s." in result.sentence()
+    assert "The current differed from group to group: 0.14 to 0.32 m/s, towards 039 to 135°." in result.sentence()
 
 
 def test_a_range_is_told_in_plain_numbers():

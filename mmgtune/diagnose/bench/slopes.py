@@ -24,7 +24,8 @@ def quick_slopes(problem: FitProblem, unit: FloatArray) -> Integrator | None:
         by = Integrator(name)
         if len(by.tableau[0]) >= len(problem.integrator.tableau[0]) * problem.integrator.substeps:
             break
-        off = np.linalg.norm(_derivatives(problem.with_integrator(by), unit) - own, axis=0)
+        with np.errstate(invalid="ignore"):  # where a run is lost
+            off = np.linalg.norm(_derivatives(problem.with_integrator(by), unit) - own, axis=0)
         if np.all(off <= least):
             return by
     return None
