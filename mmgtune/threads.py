@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar, copy_context
 from functools import lru_cache, wraps
+from threading import Lock
 from typing import ParamSpec, TypeVar
 
 from .errors import OptionError, Problem, brief
@@ -25,14 +26,23 @@ many a simulation, whose thread then waits for it."""
 
 
 class _Shared:
-    """The interpreter is shared quickly within this context."""
+    """The interpreter is shared quickly within this context, which several threads may be in at a time."""
+
+    def __init__(self) -> None:
+        self._one_by_one, self._inside, self._usual = Lock(), 0, 0.0
 
     def __enter__(self) -> None:
-        self._before = sys.getswitchinterval()
-        sys.setswitchinterval(QUICKLY)
+        with self._one_by_one:
+            if not self._inside:
+                self._usual = sys.getswitchinterval()
+                sys.setswitchinterval(QUICKLY)
+            self._inside += 1
 
     def __exit__(self, *_: object) -> None:
-        sys.setswitchinterval(self._before)
+        with self._one_by_one:
+            self._inside -= 1
+            if not self._inside:
+                sys.setswitchinterval(self._usual)
 
 
 _SHARED = _Shared()

@@ -258,9 +258,14 @@ class FitProblem:
 
     def _simulated(self, unit: FloatArray, initial: FloatArray) -> FloatArray:
         """Residuals of the cases (n_residuals, n_candidates), from initial states (n_cases, n_candidates, 6)."""
-        theta = self.theta(unit)
-        how: dict[str, Any] = {"initial": initial, "integrator": self.integrator, "keep_residuals": True}
-        result = self.backend.run(self.model, theta, self.cases, **how)
+        result = self.backend.run(
+            self.model,
+            self.theta(unit),
+            self.cases,
+            initial=initial,
+            integrator=self.integrator,
+            keep_residuals=True,
+        )
         result.residuals[:, result.diverged.any(axis=0)] = np.inf
         return result.residuals
 

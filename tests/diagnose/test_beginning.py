@@ -50,6 +50,7 @@ class Answer:
     verdict: str
     interrupted: bool = False
     kin: bool = False
+    causes: tuple = ()
 
     @property
     def names_causes(self):

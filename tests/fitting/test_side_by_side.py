@@ -111,6 +111,18 @@ def test_results_come_in_order_each_piece_with_a_core_of_its_own():
     assert free_cores() == threads.cores()
 
 
+def test_the_interpreter_is_shared_as_before_once_all_are_through():
+    """Of two that overlap the second took what the first had set for what is usual."""
+    before = sys.getswitchinterval()
+    first, second = threads._SHARED, threads._SHARED
+    first.__enter__()
+    second.__enter__()
+    first.__exit__()
+    assert sys.getswitchinterval() == pytest.approx(threads.QUICKLY)
+    second.__exit__()
+    assert sys.getswitchinterval() == before
+
+
 def test_what_a_piece_raises_comes_out_and_the_rest_is_not_begun():
     begun = []
 
