@@ -67,8 +67,8 @@ FAILING = ("none", "found", "not-separable", "unexplained")
 
 @takes(options=DiagnoseOptions, run=RunOptions)
 def command(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: DiagnoseOptions,
     run: RunOptions,

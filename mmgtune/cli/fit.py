@@ -34,8 +34,8 @@ LONG = 60.0
 
 @takes(options=FitOptions, run=RunOptions)
 def command(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: FitOptions,
     run: RunOptions,

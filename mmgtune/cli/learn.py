@@ -31,8 +31,8 @@ app.command("mixture")(learn_mixture.command)
 @app.command("rnn")
 @takes(options=LearnOptions, run=RunOptions)
 def rnn(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: LearnOptions,
     run: RunOptions,
@@ -61,8 +61,8 @@ def rnn(
 @app.command("hybrid")
 @takes(options=HybridOptions, run=RunOptions)
 def hybrid(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: HybridOptions,
     run: RunOptions,
@@ -90,8 +90,8 @@ def hybrid(
 @app.command("ensemble")
 @takes(options=EnsembleOptions, run=RunOptions)
 def ensemble(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: EnsembleOptions,
     run: RunOptions,

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 @takes(options=LeaveOutOptions, run=RunOptions)
 def command(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: LeaveOutOptions,
     run: RunOptions,

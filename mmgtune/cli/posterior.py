@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 @takes(options=PosteriorOptions, run=RunOptions)
 def command(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: PosteriorOptions,
     run: RunOptions,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @takes(options=SimulateOptions)
 def command(
-    profile: c.Profile = "suzaku",
+    profile: c.Profile = c.DEFAULT,
     trials: c.TheirOwnInputs = None,
     *,
     options: SimulateOptions,

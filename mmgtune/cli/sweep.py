@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 @takes(options=SweepOptions, run=RunOptions)
 def command(
-    profile: c.Profile = "suzaku",
-    trials: c.Trials = "suzaku",
+    profile: c.Profile = c.DEFAULT,
+    trials: c.Trials = c.DEFAULT,
     *,
     options: SweepOptions,
     run: RunOptions,

@@ -43,7 +43,51 @@ R = TypeVar("R")
 T = TypeVar("T")
 
 
-class Journal:
+class _InOrder:
+    """Work that is remembered in order: it is asked for in the order in which it was noted.
+
+    _noted  entries there are; _next: the first that was not asked for yet
+    _among  what marks its entries, None where nothing does
+    """
+
+    _noted: list[dict[str, Any]]
+    _next: int = 0
+    _among: list[int] | None = None
+
+    def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:
+        """The result of a piece of work: from the journal where it is the next there, else done, and noted.
+
+        what, asked  name of the work, and a hash of what it is to be done with
+        note, recall  a result as JSON, and back
+        """
+        if self._next < len(self._noted):
+            entry = self._noted[self._next]
+            if (entry["what"], entry["asked"], entry.get(AMONG)) == (what, asked, self._among):
+                self._next += 1
+                return recall(entry["result"])
+            if not self.is_stopped():
+                self._forget()  # the run went another way from here; what follows is of no use
+        result = do()
+        if not self.is_stopped():
+            mark = {} if self._among is None else {AMONG: self._among}
+            self._note({**mark, "what": what, "asked": asked, "result": note(result)})
+            self._next += 1
+        return result
+
+    def is_stopped(self) -> bool:
+        """Whether the run is being stopped: what it does then is not as it would have been."""
+        raise NotImplementedError
+
+    def _forget(self) -> None:
+        """Forget what was not asked for yet."""
+        raise NotImplementedError
+
+    def _note(self, entry: dict[str, Any]) -> None:
+        """Note an entry behind the others."""
+        raise NotImplementedError
+
+
+class Journal(_InOrder):
     """The journal of one run folder.
 
     identity  everything the run depends on: hashes of profile and trials, options, versions
@@ -56,8 +100,7 @@ class Journal:
         self.path = folder / name
         self.identity = identity
         self.stop = stop
-        self._noted: list[dict[str, Any]] = []
-        self._next = 0
+        self._noted = []
         self._times = 0
         self._file: Any = None
         self._one_by_one = Lock()
@@ -90,24 +133,12 @@ class Journal:
             raise nothing_to_resume(self.path.parent, self.path.name, "the run never began, or has ended", results=())
         return self.path.read_text(encoding="utf-8", errors="replace").splitlines()
 
-    def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:
-        """The result of a piece of work: from the journal where it is the next there, else done, and noted.
+    def is_stopped(self) -> bool:
+        """As ``stop`` has it."""
+        return self.stop()
 
-        what, asked  name of the work, and a hash of what it is to be done with
-        note, recall  a result as JSON, and back
-        """
-        if self._next < len(self._noted):
-            entry = self._noted[self._next]
-            if (entry["what"], entry["asked"]) == (what, asked) and AMONG not in entry:
-                self._next += 1
-                return recall(entry["result"])
-            if not self.stop():
-                self._keep(self._noted[: self._next])  # the run went another way from here; what follows is of no use
-        result = do()
-        if not self.stop():
-            self._note({"what": what, "asked": asked, "result": note(result)})
-            self._next += 1
-        return result
+    def _forget(self) -> None:
+        self._keep(self._noted[: self._next])
 
     @contextmanager
     def apart(self, n: int) -> Iterator[list[Strand]]:
@@ -188,8 +219,7 @@ class Journal:
             self._file = None
 
 
-@dataclass
-class Strand:
+class Strand(_InOrder):
     """The journal of one of several pieces of work that are done side by side.
 
     journal  of the run
@@ -197,28 +227,20 @@ class Strand:
     noted    entries of it that are there
     """
 
-    journal: Journal
-    among: list[int]
-    noted: list[dict[str, Any]]
-    _next: int = 0
+    def __init__(self, journal: Journal, among: list[int], noted: list[dict[str, Any]]):
+        self._journal, self._among, self._noted = journal, among, noted
 
-    def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:
-        """As ``Journal.remember``."""
-        if self._next < len(self.noted):
-            entry = self.noted[self._next]
-            if (entry["what"], entry["asked"]) == (what, asked):
-                self._next += 1
-                return recall(entry["result"])
-            if not self.journal.stop():
-                self.journal.without(self.noted[self._next :])
-                del self.noted[self._next :]
-        result = do()
-        if not self.journal.stop():
-            entry = {AMONG: self.among, "what": what, "asked": asked, "result": note(result)}
-            self.journal.note(entry)
-            self.noted.append(entry)
-            self._next += 1
-        return result
+    def is_stopped(self) -> bool:
+        """As the run is."""
+        return self._journal.stop()
+
+    def _forget(self) -> None:
+        self._journal.without(self._noted[self._next :])
+        del self._noted[self._next :]
+
+    def _note(self, entry: dict[str, Any]) -> None:
+        self._journal.note(entry)
+        self._noted.append(entry)
 
 
 _ACTIVE: ContextVar[Journal | Strand | None] = ContextVar("journal", default=None)

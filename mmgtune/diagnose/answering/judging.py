@@ -39,6 +39,7 @@ from ..signatures.retuned import retuned, unlike_any
 from ..voyages.difference import Difference
 from ..voyages.windows import Choice
 from .detecting import detectability
+from .one_form import AS_UNSEEN, told_on_test
 from .separate import Suggestion, suggest
 
 OF_ANOTHER_FORM = 1.0
@@ -50,10 +51,6 @@ much like it does as well then: wind and the drift of waves."""
 
 OF_RUNS_OFF = 0.03
 """The same of values of each run, which bend to most of it, with what gusts are thought to leave."""
-
-AS_UNSEEN = 0.95
-"""Share of what values of each run remove of the error on test trials, estimated on a part of these, from which a cause
-that is the same for all of them, and sees none, may be the cause as well."""
 
 PROMISING = 0.05
 """Share of the best gain from which a hypothesis is held against the test trials."""
@@ -383,7 +380,7 @@ def _telling_as_much(result: Diagnosis, found: Found) -> list[Refit]:
         (one.effect, one.parameters)
         for one in result.candidates
         if not one.by and one.effect != cause.tag and one.J_test is not None
-        if 1.0 - one.J_test / result.gain.J[0] >= AS_UNSEEN * named.gain_test
+        if told_on_test(result, one.J_test) >= AS_UNSEEN * named.gain_test
     }
     refits = [one for one in found.steps[0].refits if not one.hypothesis.by]
     return [one for one in refits if (one.hypothesis.tag, tuple(one.hypothesis.variant)) in told]

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from ..result import Diagnosis
 
-AS_WELL = 0.95
-"""Share of what values of each run remove of the error on test trials, estimated on a part of these, from which a form
-that is the same in all runs, and sees none of them, tells these as well."""
+AS_UNSEEN = 0.95
+"""Share of what values of each run remove of the error on test trials, estimated on a part of these, from which what is
+the same in all runs, and sees none of them, tells these as well."""
 
 
 def of_one_form(result: Diagnosis) -> str:
@@ -23,16 +23,18 @@ def of_one_form(result: Diagnosis) -> str:
         return ""
     own = set(cause.runs.variant)
     forms = [one for one in result.candidates if one.effect == cause.tag and not one.by and own < set(one.parameters)]
-    told = max((_told(result, one.J_test) for one in forms), default=0.0)
-    return cause.tag if told > 0.0 and told >= AS_WELL * _told(result, result.gain.J[1]) else ""
+    told = max((told_on_test(result, one.J_test) for one in forms), default=0.0)
+    return cause.tag if told > 0.0 and told >= AS_UNSEEN * told_on_test(result, result.gain.J[1]) else ""
 
 
 def tells_as_well(other: Diagnosis, result: Diagnosis) -> bool:
     """Whether causes are named and tell the test trials as well, once values of each run were not looked for."""
-    return other.names_causes and _told(other, other.gain.J[1]) >= AS_WELL * _told(result, result.gain.J[1])
+    return other.names_causes and told_on_test(other, other.gain.J[1]) >= AS_UNSEEN * told_on_test(
+        result, result.gain.J[1]
+    )
 
 
-def _told(result: Diagnosis, J: float | None) -> float:
+def told_on_test(result: Diagnosis, J: float | None) -> float:
     """Share of J on test trials that what leaves this much removes; 0 where it was not measured."""
     before = result.gain.J[0]
     return 1.0 - J / before if before and J is not None else 0.0

@@ -21,12 +21,10 @@ from ...objective import cases_of
 from ...trial import Trial
 from ..bench.runs import groups_of, labels_of, spread_key
 from ..bench.workbench import LOOSE, Point, Workbench
+from ..searching.base_fit import PRECISE
 
 FIRST = 0.4
 """Share of a held-out run on which run-specific parameters are estimated."""
-
-UNNOTICED = 0.02
-"""Fall of chi-squared that counts as none where run-specific parameters are estimated."""
 
 BESIDE = 1.5
 """Spreads beside the mean at which fits of run-specific parameters also begin."""
@@ -84,7 +82,7 @@ def estimated_there(bench: Workbench, point: Point, trials: Sequence[Trial]) -> 
         starts,
         max_iterations=20,
         whiten=noise.apply,
-        tolerance=UNNOTICED,
+        tolerance=PRECISE,
         beliefs=beliefs,
         trusting=True,
         slopes=bench.slopes,
