@@ -28,7 +28,9 @@ from ..profile import ShipProfile, with_all_effects
 from ..run_provenance import identity_of, make_provenance
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, another_ship, oddities
-from ..trial.checks.set_checks import turn_away
+from ..trial.checks.control_checks import RUDDER_SIGN
+from ..trial.checks.motion_checks import CONTRADICTED
+from ..trial.checks.set_checks import found_in
 from ..trial.checks.swell import period_of, swings
 from ..trial.schema import MOTION
 from .answering.ended import in_words as ends_in_words
@@ -214,10 +216,12 @@ def _looked_at(
     odd += astern
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     result = replace(result, warnings=warnings, jumped=jumped, ended=ended)
-    if result.verdict != "unexplained" or choice is not None:
+    if result.verdict not in ("unexplained", "none") or choice is not None:
         return result
     if contradicted := _contradicted(whole):
-        return replace(result, contradicted=contradicted)
+        return replace(result, contradicted=contradicted, instead=None)
+    if result.verdict == "none":
+        return result
     if astern and len(reversed_in(bench.model, seen)) < len({trial.whole for trial in seen}):
         return replace(result, contradicted=f"{astern[0]} Leave that out, and diagnose what else was sailed.")
     swinging, period = _swinging(whole, profile.L_pp)
@@ -280,11 +284,17 @@ def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
 
 def _contradicted(trials: Mapping[str, Trial]) -> str:
     """What the logs of most trials say against each other, which is to be put right before a cause is looked for."""
-    of = _most(len(turn_away(trials)), trials)
-    return of and (
-        f"First put the logs right: in {of} the ship turns away from her rudder, so the sign of its angle is wrong, or "
-        "those of heading and yaw rate."
-    )
+    first = "First put the logs right: in"
+    if of := _most(len(found_in(trials, RUDDER_SIGN)), trials):
+        return (
+            f"{first} {of} the ship turns away from her rudder, so the sign of its angle is wrong, or those of heading "
+            "and yaw rate."
+        )
+    apart = found_in(trials, CONTRADICTED)
+    if of := _most(len(apart), trials):
+        one = next(iter(apart.values()))
+        return f"{first} {of} {one.what}, whatever the model: {one.why}."
+    return ""
 
 
 def _swinging(trials: Mapping[str, Trial], L_pp: float) -> tuple[str, float]:

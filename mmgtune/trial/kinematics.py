@@ -267,6 +267,46 @@ def lever_of(columns: Mapping[str, FloatArray]) -> Lever | None:
     return Lever(float(x), float(y), ways.misfit(logged + x * turned[0] + y * turned[1]))
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """By how much positions are longer to the north and to the east than velocities and heading say.
+
+    misfit  what is left without it, as of ``position_misfits``
+    """
+
+    north: float
+    east: float
+    misfit: float
+
+    @property
+    def uneven(self) -> bool:
+        """Whether one axis is longer than the other, as no unit of speed makes it."""
+        return self.north > 0.0 and self.east > 0.0 and abs(np.log(self.east / self.north)) > OFF
+
+    @property
+    def axes(self) -> dict[str, float]:
+        """Of the positions that are to be divided, by how much."""
+        return {name: by for name, by in (("x", self.north), ("y", self.east)) if abs(by - 1.0) > OFF}
+
+
+def stretch_of(columns: Mapping[str, FloatArray]) -> Stretch | None:
+    """The stretch of positions by axis, by least squares; None where the ship hardly moves, or along one axis alone."""
+    ways = _ways(columns)
+    if ways is None:
+        return None
+    logged = ways.rotated(ways.psi, ways.v)
+    said, moved = logged[ways.usable], ways.moved[ways.usable]
+    along = np.sum(said**2, axis=0)
+    if np.min(along) < ACROSS**2 * np.max(along):
+        return None
+    by = np.sum(moved * said, axis=0) / along
+    return Stretch(float(by[0]), float(by[1]), ways.misfit(logged * by))
+
+
+ACROSS = 0.2
+"""Share of the way along the other axis that a ship must make along one for its scale to show."""
+
+
 def _windows(values: FloatArray, window: int) -> FloatArray:
     """Sums over every run of ``window`` intervals."""
     summed = _summed(values)

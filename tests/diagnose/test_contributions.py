@@ -13,7 +13,7 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.answering import saying
-from mmgtune.diagnose.answering.judging import Judge, _of_effects, _telling_as_much
+from mmgtune.diagnose.answering.judging import Judge, _not_refuted, _of_effects, _telling_as_much
 from mmgtune.diagnose.bench.hypotheses import Hypothesis, known_causes
 from mmgtune.diagnose.bench.noise import ChannelNoise
 from mmgtune.diagnose.bench.workbench import Point, make_workbench
@@ -672,6 +672,21 @@ def test_what_tells_unseen_runs_as_well_as_values_of_each_may_be_the_cause(by, t
 
 
 @pytest.mark.parametrize(
+    ("told", "J", "left"), [(0.9, 8.3, []), (0.9, 7.6, ["wind"]), (0.9, None, ["wind"]), (0.4, 8.3, ["wind"])]
+)
+def test_what_test_trials_refute_is_no_rival(told, J, left):
+    """A gain of the rudder to starboard "or wave-drift", with which J of test trials was twenty times that without."""
+    candidates = [
+        SimpleNamespace(effect="wind", parameters=("size",), by="", J_test=J),
+        SimpleNamespace(effect="wind", parameters=("size",), by="trial", J_test=70.0),
+    ]
+    result = SimpleNamespace(
+        causes=[SimpleNamespace(gain_test=told)], candidates=candidates, gain=SimpleNamespace(J=(7.5, 0.2))
+    )
+    assert [one.hypothesis.tag for one in _not_refuted(result, [rival("wind")])] == left
+
+
+@pytest.mark.parametrize(
     ("one", "chance"),
     [
         (sum_of(CLEAR, sized=False, removed=0.2), True),
@@ -995,6 +1010,7 @@ def test_how_large_the_best_that_is_known_would_be_is_said_where_it_is_told(size
     seen = SimpleNamespace(
         causes=(antenna,),
         contributions=(("antenna", None),),
+        contradicted="",
         unclear="",
         tells_a_part=True,
         leftover=left,

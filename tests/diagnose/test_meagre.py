@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,11 +13,13 @@ import pytest
 from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
 from mmgtune.backends import Integrator
 from mmgtune.diagnose.answering.judging import _left_open
+from mmgtune.diagnose.folder import write_diagnosis
 from mmgtune.errors import OptionError
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile
 from mmgtune.trial import Trial
-from mmgtune.trial.checks.set_checks import turn_away
+from mmgtune.trial.checks.control_checks import RUDDER_SIGN
+from mmgtune.trial.checks.set_checks import found_in
 from mmgtune.units import DEG
 from tests.diagnose.sensors import logged
 
@@ -81,12 +84,35 @@ def test_a_channel_of_numbers_whose_squares_are_none():
 def test_a_rudder_of_the_wrong_sign_is_told_first():
     trials = load_trials("suzaku")
     wrong = {name: replace(one, delta=-one.delta) for name, one in trials.trials.items() if name in trials.tune[:3]}
-    assert turn_away(wrong) == list(wrong)
-    assert turn_away(trials.trials) == []
+    assert list(found_in(wrong, RUDDER_SIGN)) == list(wrong)
+    assert not found_in(trials.trials, RUDDER_SIGN)
     asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
     result = diagnose("suzaku", replace(trials, trials=wrong, tune=tuple(wrong), test=()), asked)
     assert result.verdict == "unexplained"
     assert result.sentence().startswith("First put the logs right: in 3 of 3 trials the ship turns away from")
+
+
+@pytest.mark.parametrize("by_noise", [False, True])
+def test_positions_stretched_along_one_axis_are_told_first(by_noise, monkeypatch, tmp_path):
+    """Longitudes without the cosine of latitude were "nothing is wrong", as noise that wanders by 13 m."""
+    trials, profile, rng = load_trials("suzaku"), load_profile("suzaku"), np.random.default_rng(3)
+    ids = trials.tune[:3]
+    sailed = [trials.trials[id] for id in ids]
+    motions = simulate_trials(profile, sailed, integrator=Integrator("rk4"))
+    made = {id: logged(trial, motion, rng) for id, trial, motion in zip(ids, sailed, motions, strict=True)}
+    if by_noise:  # what is left is thought to be noise, whatever the logs say
+        monkeypatch.setattr(import_module("mmgtune.diagnose.run"), "_contradicted", lambda trials: "Logs differ.")
+    else:
+        made = {id: replace(one, y=1.2 * one.y) for id, one in made.items()}
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
+    result = diagnose(profile, replace(trials, trials=made, tune=ids, test=()), asked)
+    assert (result.verdict, result.instead) == ("unexplained", None)
+    first = "First put the logs right: in 3 of 3 trials u, v and heading do not integrate to the positions, whatever"
+    assert result.sentence().startswith("Logs differ." if by_noise else first)
+    assert ("if 'y' is divided by 1.2. Something is wrong" in result.sentence()) != by_noise
+    assert ("Logs differ. What the re-tuned model leaves is taken for noise" in result.sentence()) == by_noise
+    document = write_diagnosis(result, tmp_path / "run")
+    assert document["headline"].startswith("Logs differ." if by_noise else "First put the logs right: in 3")
 
 
 def test_a_run_astern_that_the_model_does_not_have_is_told_first():

@@ -97,6 +97,8 @@ def test_the_fix_is_of_the_reading_that_fits() -> None:
         (knots, "multiply 'u' and 'v' by 0.5144"),
         (replace(start, u=start.u / 1.944, v_m=start.v_m / 1.944), "divide 'u' and 'v' by 0.5144"),
         (replace(start, y=-start.y), "change the sign of 'y': positive east"),
+        (replace(start, y=1.3 * start.y), "give 'x' and 'y' in metres alike"),
+        (replace(start, x=0.6 * start.x), "give 'x' and 'y' in metres alike"),
         (replace(start, psi=start.psi * DEG, r=start.r * DEG), "multiply 'psi' by 180/pi"),
         (in_earth_axes(start), "turn 'u' and 'v' into ship axes"),
         (replace(start, u=start.u * 0.6), "both velocities and positions at midship, not at an antenna"),
@@ -104,6 +106,9 @@ def test_the_fix_is_of_the_reading_that_fits() -> None:
         (finding,) = [one for one in check_trial(trial) if one.code == "contradicted"]
         assert finding.fix.startswith(fix) or fix in finding.fix
         assert ("over ground" in finding.fix) == (fix.startswith("both"))
+    stretched = replace(start, x=0.7 * start.x, y=1.2 * start.y)
+    (finding,) = [one for one in check_trial(stretched) if one.code == "contradicted"]
+    assert finding.why.endswith("they fit if 'x' is divided by 0.7 and 'y' is divided by 1.2")
 
 
 def test_positions_of_an_antenna_are_told() -> None:

@@ -101,6 +101,12 @@ def test_positions_in_another_unit_are_no_end_of_the_log(factor):
     assert not told(replace(trial, x=factor * trial.x, y=factor * trial.y))
 
 
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_positions_too_long_along_one_axis_are_no_end_of_the_log(axis):
+    trial = made(seed=1)
+    assert not ends_of([replace(trial, **{axis: 1.3 * getattr(trial, axis)})])
+
+
 def test_a_yaw_rate_that_ends_below_noise_is_told():
     trial = SUZAKU["turn_p35"]
     end = 45.0 / 60.0 * DEG

@@ -28,7 +28,7 @@ from ..causes.contributions import Aside, Contribution, contributions, unlike_wi
 from ..causes.doubted import Doubted, Leading
 from ..evidence.gathering import error_of, evidence
 from ..evidence.leftover import NOTICED, Leftover, leftover
-from ..held_out.gain import J_of, held_out
+from ..held_out.gain import WORSE, J_of, held_out
 from ..held_out.unseen import Unseen
 from ..result import Diagnosis
 from ..searching.instead import instead_of_tuning
@@ -216,6 +216,8 @@ class Judge:
         rivals = _of_effects(found.causes, [rivals_of(self.bench, found, cause) for cause in found.causes])
         if len(found.causes) == 1 and not rivals[0]:
             rivals = [_of_kin(result, found) or _telling_as_much(result, found)]
+        if len(found.causes) == 1:
+            rivals = [_not_refuted(result, rivals[0])]
         groups = tuple(
             (cause.tag, *(rival.hypothesis.tag for rival in of))
             for cause, of in zip(found.causes, rivals, strict=True)
@@ -384,6 +386,21 @@ def _telling_as_much(result: Diagnosis, found: Found) -> list[Refit]:
     }
     refits = [one for one in found.steps[0].refits if not one.hypothesis.by]
     return [one for one in refits if (one.hypothesis.tag, tuple(one.hypothesis.variant)) in told]
+
+
+def _not_refuted(result: Diagnosis, rivals: Sequence[Refit]) -> list[Refit]:
+    """Rivals of a single cause without those that test trials refute: what the cause tells these would foretell worse
+    than no cause at all."""
+    told = result.causes[0].gain_test
+    if told is None or told < TOLD:
+        return [*rivals]
+    refuted = {
+        (one.effect, one.parameters, one.by)
+        for one in result.candidates
+        if told_on_test(result, one.J_test) < -WORSE  # 0 where it was not measured
+    }
+    own = [(one.hypothesis.tag, tuple(one.hypothesis.variant), one.hypothesis.by) for one in rivals]
+    return [one for one, said in zip(rivals, own, strict=True) if said not in refuted]
 
 
 def _explained(found: Found, before: Leftover, left: Leftover) -> float:

@@ -222,6 +222,8 @@ def _of_the_unknown(answer: Answer) -> Said:
             f"the model with it {held_out} {_where(answer)}."
         )
         return Said(_CANNOT_NAME, _joined(best, _as_a_part(answer)))
+    if answer.contradicted and not (answer.causes or answer.leaves_shape):
+        return Said("What the re-tuned model leaves is taken for noise of the sensors.", _fading(answer))
     if answer.misses_test:
         return Said(
             "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "

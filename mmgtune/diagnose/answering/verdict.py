@@ -64,12 +64,17 @@ class Answer(Belief, Plotted):
             return "interrupted"
         if self.swell:
             return "none"
-        shaped = self.leftover.structured or bool(self.leftover.offsets or self.leftover.changed) or self.misses_test
-        if self.fails if self.causes else shaped:
+        if self.fails if self.causes else self.leaves_shape or self.contradicted:
             return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
         if self.groups:
             return "not-separable"
         return "found" if self.causes or self.between else "none"
+
+    @property
+    def leaves_shape(self) -> bool:
+        """Whether what is left shows something that is wrong, here or on the trials kept for testing."""
+        left = self.leftover
+        return left.structured or bool(left.offsets or left.changed) or self.misses_test
 
     @property
     def kind(self) -> str:

@@ -12,7 +12,7 @@ from ..unusable import unusable
 from .control_checks import control_findings
 from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
-from .motion_checks import motion_findings, sway_findings
+from .motion_checks import CONTRADICTED, motion_findings, sway_findings
 from .saturation import saturation_findings
 from .sensor_ends import ends_of
 from .standing import standing_findings
@@ -38,9 +38,9 @@ def check_trial(trial: Trial, L_pp: float | None = None, *, usable: bool = False
         return [Finding("error", problem.what, problem.where, problem.why, problem.fix) for problem in errors]
     with np.errstate(all="ignore"):
         motion = motion_findings(trial, where)
-        contradicted = any(one.code == "contradicted" for one in motion)
+        contradicted = any(one.code == CONTRADICTED for one in motion)
         ends = ends_of([trial])
-        follows = {"yaw-rate": "r", "contradicted": "u"}  # what the end of a sensor is the reason of
+        follows = {"yaw-rate": "r", CONTRADICTED: "u"}  # what the end of a sensor is the reason of
         motion = [one for one in motion if follows.get(one.code) not in ends]
         found = [
             *sway_findings(trial, where),

@@ -9,7 +9,7 @@ from ...arrays import BoolArray, FloatArray, runs_of_true
 from ...inputs import INPUTS
 from ...phrases import aboard, counted
 from ...units import DEG
-from ..kinematics import FITS, Reading, lever_of, position_misfits, turning
+from ..kinematics import FITS, Reading, lever_of, position_misfits, stretch_of, turning
 from ..model import Trial
 from ..schema import LARGEST_YAW_RATE, MOTION
 from .finding import Finding
@@ -36,6 +36,11 @@ MENDED = {
     Reading.TWICE: "multiply 'psi' by 180/pi: it is in radians then",
 }
 """What makes of a reading that fits the one that is asked for."""
+
+CONTRADICTED = "contradicted"
+"""Code of a finding that positions and velocities contradict each other."""
+
+IN_METRES = "give 'x' and 'y' in metres alike: longitudes become metres with the cosine of the latitude"
 
 OF_MIDSHIP = "give positions of midship: [antenna] of the map says where they were measured"
 
@@ -258,6 +263,10 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
     if lever is not None and lever.likely and FREER * lever.misfit < enough:
         place = f"if they are of a point about {aboard(lever.x, lever.y, 2)} of midship"
         fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
+    stretch = stretch_of(trial.columns)
+    if stretch is not None and stretch.uneven and stretch.misfit < enough:
+        divided = " and ".join(f"'{name}' is divided by {by:.3g}" for name, by in stretch.axes.items())
+        fitting.append((FREER * stretch.misfit, f"if {divided}", IN_METRES))
     fitting.sort()
     if not fitting and _misses(trial, 0.0, WANDER) <= FITS:
         return []
@@ -272,6 +281,6 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
             f"{where}, columns 'x', 'y', 'psi', 'u' and 'v'",
             f"read in ship axes they miss by {100 * asked:.0f} % of the distance; {fits}",
             fix,
-            "contradicted",
+            CONTRADICTED,
         )
     ]

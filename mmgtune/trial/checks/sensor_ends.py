@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...physics.frame import to_ship
-from ..kinematics import halfway, middle
+from ..kinematics import FITS, Reading, halfway, middle, position_misfits, stretch_of
 from ..model import Trial
 from ..schema import ATTRIBUTES
 
@@ -66,10 +66,12 @@ def ends_of(trials: Iterable[Trial]) -> dict[str, End]:
     if not every:
         return {}
     samples = float(np.median([_stretch(one) for one in every]))
-    ends = {}
+    ends: dict[str, End | None] = {}
     for name, by_stretch in (("u", _ways), ("r", _turns)):
         told, logged = (np.concatenate(parts) for parts in zip(*map(by_stretch, every), strict=True))
         ends[name] = _end(told, logged, samples)
+    if ends["u"] is not None and 2 * sum(map(_stretched, every)) > len(every):
+        del ends["u"]
     return {name: one for name, one in ends.items() if one is not None}
 
 
@@ -99,6 +101,12 @@ def _at_first(trial: Trial) -> float:
     degree = 1 if len(t) < 2 * SHORTEST else 2
     north, east = (np.polynomial.Polynomial.fit(t, of[rows], degree).deriv()(0.0) for of in (trial.x, trial.y))
     return float(to_ship(trial.psi[0], north, east)[0])
+
+
+def _stretched(trial: Trial) -> bool:
+    """Whether positions that are too long along one axis are why the ship seems to go faster than her log shows."""
+    found, asked = stretch_of(trial.columns), position_misfits(trial.columns, among=(Reading.AS_ASKED,))
+    return found is not None and found.uneven and found.misfit < min(FITS, 0.5 * asked[Reading.AS_ASKED])
 
 
 def _stretch(trial: Trial) -> int:

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..model import Trial
 from .all_checks import check_trial
-from .control_checks import RUDDER_SIGN
 from .cross_checks import ON_APPROACH, WAY, usual_way, way_finding, way_per_turn
 from .finding import SEVERITIES, Finding
 
@@ -80,9 +79,10 @@ def odd_in_words(odd: Mapping[str, str]) -> str:
     return "; ".join([*told[:NAMED], *more])
 
 
-def turn_away(trials: Mapping[str, Trial]) -> list[str]:
-    """Trials in which the ship turns away from her rudder: a sign is wrong there."""
-    return [id for id, one in trials.items() if any(f.code == RUDDER_SIGN for f in check_trial(one))]
+def found_in(trials: Mapping[str, Trial], code: str) -> dict[str, Finding]:
+    """The finding with a code, by trial that has one."""
+    found = {name: [one for one in check_trial(trial) if one.code == code] for name, trial in trials.items()}
+    return {name: of[0] for name, of in found.items() if of}
 
 
 def _of_a_gear(
