@@ -46,7 +46,7 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_pool.cache_clear)  # threads stay behind in the parent
 
 
-def _compiling() -> ModuleType:
+def compiler() -> ModuleType:
     """The module that compiles; it is imported where something is to run, since numba takes long to import.
 
     Raises OptionError where the environment keeps numba from compiling.
@@ -166,7 +166,7 @@ class Compiled:
         """The compiled simulator for the components of ``model``."""
         text = kernel_source(model)
         if text not in self._kernels:
-            self._kernels[text] = _compiling().load_kernel(text, functions_of(model))
+            self._kernels[text] = compiler().load_kernel(text, functions_of(model))
         return self._kernels[text]
 
     def is_ready(self, model: Model) -> bool:
@@ -198,7 +198,7 @@ class Compiled:
         if text in self._kernels:
             return True
         try:
-            return bool(_compiling().is_kept(text, functions_of(model)))
+            return bool(compiler().is_kept(text, functions_of(model)))
         except OptionError:  # said where something is to be compiled
             return False
 

@@ -285,12 +285,12 @@ def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
 def _contradicted(trials: Mapping[str, Trial]) -> str:
     """What the logs of most trials say against each other, which is to be put right before a cause is looked for."""
     first = "First put the logs right: in"
-    if of := _most(len(found_in(trials, RUDDER_SIGN)), trials):
+    away, apart = found_in(trials, RUDDER_SIGN, CONTRADICTED)
+    if of := _most(len(away), trials):
         return (
             f"{first} {of} the ship turns away from her rudder, so the sign of its angle is wrong, or those of heading "
             "and yaw rate."
         )
-    apart = found_in(trials, CONTRADICTED)
     if of := _most(len(apart), trials):
         one = next(iter(apart.values()))
         return f"{first} {of} {one.what}, whatever the model: {one.why}."

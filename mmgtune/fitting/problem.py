@@ -155,12 +155,26 @@ class FitProblem:
         values = self.box.from_unit(unit)
         if not self.grouped:
             return self.model.matrix(self.box.names, values)
-        each = [tuple(k for k in range(len(self.box)) if self._is_of(k, case)) for case in range(len(self.cases))]
-        made = {
-            own: self.model.matrix([base_of(self.box.names[k]) for k in own], values[list(own)])
-            for own in dict.fromkeys(each)
-        }
-        return np.stack([made[own] for own in each], axis=1)
+        n_candidates = unit.shape[1]
+        theta = np.empty((len(self.model.base), len(self.cases), n_candidates))
+        for names, cases in self._alike:
+            own = values[np.array([self._places[case] for case in cases], dtype=np.intp)]
+            made = self.model.matrix(names, own.transpose(1, 0, 2).reshape(len(names), -1))
+            theta[:, cases] = made.reshape(len(theta), len(cases), n_candidates)
+        return theta
+
+    @cached_property
+    def _places(self) -> list[list[int]]:
+        """The targets that are coefficients of each case."""
+        return [np.flatnonzero(own).tolist() for own in self._own]
+
+    @cached_property
+    def _alike(self) -> list[tuple[list[str], list[int]]]:
+        """Cases with the same coefficients among their targets, whatever group these are of: their names, and which."""
+        found: dict[tuple[str, ...], list[int]] = {}
+        for case, places in enumerate(self._places):
+            found.setdefault(tuple(base_of(self.box.names[k]) for k in places), []).append(case)
+        return [(list(names), cases) for names, cases in found.items()]
 
     @cached_property
     def grouped(self) -> bool:

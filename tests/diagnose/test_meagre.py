@@ -84,8 +84,8 @@ def test_a_channel_of_numbers_whose_squares_are_none():
 def test_a_rudder_of_the_wrong_sign_is_told_first():
     trials = load_trials("suzaku")
     wrong = {name: replace(one, delta=-one.delta) for name, one in trials.trials.items() if name in trials.tune[:3]}
-    assert list(found_in(wrong, RUDDER_SIGN)) == list(wrong)
-    assert not found_in(trials.trials, RUDDER_SIGN)
+    assert [list(found) for found in found_in(wrong, RUDDER_SIGN)] == [list(wrong)]
+    assert found_in(trials.trials, RUDDER_SIGN) == [{}]
     asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
     result = diagnose("suzaku", replace(trials, trials=wrong, tune=tuple(wrong), test=()), asked)
     assert result.verdict == "unexplained"

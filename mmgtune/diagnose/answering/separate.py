@@ -18,7 +18,7 @@ from ...arrays import FloatArray, IntArray
 from ...backends import STATES
 from ...motions import as_trial
 from ...objective import Objective
-from ...orders import Helmsman, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvre
+from ...orders import Helmsman, Sailing, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvres
 from ...trial import Trial
 from ...units import DEG
 from ..bench.workbench import Point, Workbench
@@ -86,6 +86,13 @@ class Feasible(NamedTuple):
     longest: float  # [s]
     sailed: Callable[[Trial], bool]  # whether a trial has such rudder angles
     engine: Callable[[float], float] | None = None  # share of the revolutions from the share of the speed left
+
+    def sailing(self, n: float) -> Sailing:
+        """How it is simulated, with revolutions n [1/s] of the approach."""
+        heading = 0.0 if self.heading == ANY else self.heading
+        return Sailing(
+            self.helmsman, n=self.share * n, heading=heading, longest=self.longest, step=1.0, engine=self.engine
+        )
 
 
 SLOWER, HALF = 0.9, 0.5
@@ -214,16 +221,9 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
     fitted = [_Fitted.of(bench, point) for _, point in rivals]
     feasible = menu(profile.L_pp / profile.approach.speed)
     asked = [one for one in feasible if not holds(bench.trials, one, profile.approach.n)]
-    for one in asked:
-        motion = run_manoeuvre(
-            profile,
-            one.helmsman,
-            heading=0.0 if one.heading == ANY else one.heading,
-            n=one.share * profile.approach.n,
-            longest=one.longest,
-            step=1.0,
-            engine=one.engine,
-        )
+    for one, motion in zip(
+        asked, run_manoeuvres(profile, [one.sailing(profile.approach.n) for one in asked]), strict=True
+    ):
         if motion.diverged:
             continue
         trial = as_trial(profile, motion)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ...backends import STATES, Cases
+from ...backends.filtering import Recursion, Series
 from ...trial import Trial
 
 LAGS = 6
@@ -97,15 +98,17 @@ class NoiseModel:
 
     cases: Cases
     channels: dict[str, ChannelNoise]
-    _series: list[tuple[str, _Rows]] = field(init=False)
+    _series: Series = field(init=False)
+    _of: list[ChannelNoise] = field(init=False)
     _sigma: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        series = series_of(self.cases)
-        self._series = [(channel, _evenly(rows)) for channel, rows in series]
-        self._sigma = np.ones(sum(len(rows) for _, rows in series))
-        for channel, rows in self._series:
-            self._sigma[rows] = self.channels[channel].filter[2]
+        every = series_of(self.cases)
+        self._of = [self.channels[channel] for channel, _ in every]
+        self._series = Series.of([rows for _, rows in every])
+        self._sigma = np.ones(len(self._series.rows))
+        for noise, (_, rows) in zip(self._of, every, strict=True):
+            self._sigma[rows] = noise.filter[2]
 
     @property
     def coloured(self) -> bool:
@@ -124,49 +127,32 @@ class NoiseModel:
 
         out  where they are written to, ``values`` themselves perhaps: many columns are too much to hold twice
         """
-        freed = []
-        for channel, rows in self._series:
-            noise = self.channels[channel]
-            if noise.fading <= 0.0:
-                continue
-            phi, theta, sigma = noise.filter
-            with np.errstate(invalid="ignore", over="ignore"):
-                white = _filtered([1.0 / sigma, -phi / sigma], [1.0, theta], values[rows])
-                white[0] *= sigma / np.sqrt(noise.variance)
-            freed.append((rows, white))
-        found = np.divide(values, self._sigma.reshape(-1, *(1,) * (values.ndim - 1)), out=out)
-        for rows, white in freed:
-            found[rows] = white
-        return np.asarray(found)
+        if not self.coloured:
+            return np.asarray(np.divide(values, self._sigma.reshape(-1, *(1,) * (values.ndim - 1)), out=out))
+        found = self._series.filtered(values, [_whitening(noise) for noise in self._of], out)
+        found[self._series.firsts] *= self._settled(values.ndim)
+        return found
 
     def restore(self, values: FloatArray) -> FloatArray:
         """Whitened residuals (n_residuals, ...) back in the units and with the memory they had before ``apply``."""
-        out = np.empty_like(values)
-        for channel, rows in self._series:
-            noise = self.channels[channel]
-            phi, theta, sigma = noise.filter
-            part = values[rows] * sigma
-            if noise.fading > 0.0:
-                part[0] *= np.sqrt(noise.variance) / sigma
-                part = _filtered([1.0, theta], [1.0, -phi], part)
-            out[rows] = part
-        return out
+        found = np.array(values, dtype=np.float64)
+        found[self._series.firsts] /= self._settled(values.ndim)
+        return self._series.filtered(found, [_colouring(noise) for noise in self._of], found)
+
+    def _settled(self, n_dim: int) -> FloatArray:
+        """(n_series, 1, ...) deviation of a white sample over that of a first one, which has all that fades already."""
+        ratio = np.array([noise.filter[2] / math.sqrt(noise.variance) for noise in self._of])
+        return ratio.reshape(-1, *(1,) * (n_dim - 1))
 
 
-_Rows = IntArray | slice
+def _whitening(noise: ChannelNoise) -> Recursion:
+    phi, theta, sigma = noise.filter
+    return Recursion(1.0 / sigma, -phi / sigma, -theta)
 
 
-def _evenly(rows: IntArray) -> _Rows:
-    """Rows as a slice where they are evenly spaced, which NumPy need not copy to look at."""
-    step = int(rows[1] - rows[0]) if len(rows) > 1 else 1
-    whole = np.array_equal(rows, rows[0] + step * np.arange(len(rows)))
-    return slice(int(rows[0]), int(rows[-1]) + 1, step) if whole and step > 0 else rows
-
-
-def _filtered(over: list[float], under: list[float], values: FloatArray) -> FloatArray:
-    from scipy.signal import lfilter  # half a second, which white noise does without
-
-    return np.asarray(lfilter(over, under, values, axis=0))
+def _colouring(noise: ChannelNoise) -> Recursion:
+    phi, theta, sigma = noise.filter
+    return Recursion(sigma, theta * sigma, phi)
 
 
 def series_of(cases: Cases) -> list[tuple[str, IntArray]]:

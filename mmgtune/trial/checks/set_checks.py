@@ -79,10 +79,10 @@ def odd_in_words(odd: Mapping[str, str]) -> str:
     return "; ".join([*told[:NAMED], *more])
 
 
-def found_in(trials: Mapping[str, Trial], code: str) -> dict[str, Finding]:
-    """The finding with a code, by trial that has one."""
-    found = {name: [one for one in check_trial(trial) if one.code == code] for name, trial in trials.items()}
-    return {name: of[0] for name, of in found.items() if of}
+def found_in(trials: Mapping[str, Trial], *codes: str) -> list[dict[str, Finding]]:
+    """For each code the finding that has it, by trial where there is one."""
+    checked = {name: check_trial(trial) for name, trial in trials.items()}
+    return [{name: one for name, found in checked.items() for one in found if one.code == code} for code in codes]
 
 
 def _of_a_gear(
