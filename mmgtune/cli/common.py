@@ -32,6 +32,16 @@ if TYPE_CHECKING:
 
 _MADE: list[Path] = []
 
+
+class NotNamed(str):
+    """What stands for a name that was not given, to be told from the same name given."""
+
+
+def _told_apart(context: typer.Context, option: typer.CallbackParam, value: str) -> str:
+    source = context.get_parameter_source(option.name or "")
+    return NotNamed(value) if source is not None and source.name == "DEFAULT" else value
+
+
 DEFAULT = "suzaku"
 """The profile and the trials that commands take where none are named."""
 
@@ -52,6 +62,7 @@ Profile = Annotated[
     typer.Option(
         "--profile",
         "-p",
+        callback=_told_apart,
         help="Ship profile: a TOML file or a bundled name.",
         rich_help_panel=INPUT,
         autocompletion=completing.profiles,
@@ -111,8 +122,8 @@ def load_with_voyages(profile: str, trials: str) -> tuple[ShipProfile, TrialSet 
 
 
 def _say_which_ship(profile: str, ship: ShipProfile, data: TrialSet | VoyageSet) -> None:
-    """Say on stderr that the bundled ship stands for that of trials which name none."""
-    if profile == DEFAULT and not data.ship:
+    """Say on stderr that the bundled ship stands for that of trials which name none, where nobody named her."""
+    if isinstance(profile, NotNamed) and not data.ship:
         whose = f"{ship.name}, {ship.L_pp:.0f} m long, is taken for her"
         say(f"warning: the trials do not say which ship they are of: {whose}; name her profile with --profile")
 

@@ -34,6 +34,8 @@ class Diagnosis(Answer):
     jumped    largest jump of the position of each run that has any, and that was taken in parts there [m]
     ended     largest value that the log of a channel shows, of those whose sensor is at the end of its range, "u" [m/s]
               or "r" [rad/s]; what it shows there is left out
+    misread   logs that are off in a few runs, and are left out: by channel and run how many times the motion they show,
+              None where it is no factor
     contradicted what the logs say against each other, or what no model of the ship has, in a sentence; told first where
               the answer is unexplained
     swell     that the ship swings in waves, and that nothing is left beside that; "" where it is not so
@@ -167,6 +169,7 @@ class Diagnosis(Answer):
                 "left_open_by_inputs": self.leftover.left_open,
                 "by_channel": self.leftover.channels,
                 "changed_within": {name: list(ids) for name, ids in self.leftover.changed.items()},
+                "misread": {name: dict(runs) for name, runs in (self.misread or self.leftover.misread).items()},
                 "share_explained_by_causes": self.explained_share,
                 "correlation": self.leftover.alike,
                 "largest_share_by_one_quantity": {

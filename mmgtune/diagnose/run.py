@@ -38,12 +38,13 @@ from .answering.ended import within_range
 from .answering.judging import Judge, leaves_much_open
 from .answering.jumped import beginnings_in_words, from_the_track_on, in_parts
 from .answering.jumped import in_words as jumps_in_words
-from .answering.one_form import of_one_form, tells_as_well
+from .answering.one_form import misleading, of_one_form, tells_as_well
 from .bench.hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
 from .bench.workbench import Workbench, make_workbench
 from .causes.belief import TOLD
 from .causes.contributions import removed_by, set_aside
 from .evidence.leftover import NOTICED, SWELLS, beside_swell, leftover
+from .evidence.misread import is_of_few, without
 from .held_out.together import Together
 from .held_out.unseen import Unseen
 from .result import Diagnosis
@@ -162,7 +163,7 @@ def _looked_at(
     odd = [f"{capital(words)}." for words in another_ship(trials.ship, profile.id)]
     odd += oddities(trials.trials, profile.L_pp) if choice is None else []
     odd += _derived(trials.trials)
-    whole = trials.trials
+    given, whole = trials, trials.trials
     off: dict[str, float] = {}
     jumped: dict[str, float] = {}
     if choice is None and options.restart is None:
@@ -216,6 +217,11 @@ def _looked_at(
     odd += astern
     warnings = (*odd, *beside, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     result = replace(result, warnings=warnings, jumped=jumped, ended=ended)
+    if is_of_few(misread := result.leftover.misread, len(seen)) and not hooks.stop():
+        hooks.on_phase("looking again without logs that are misread")
+        right = replace(given, trials={id: without(trial, misread) for id, trial in whole.items()})
+        again = _looked_at(profile, right, choice, options, hooks, provenance)
+        return replace(again, misread={**misread, **again.misread})
     if result.verdict not in ("unexplained", "none") or choice is not None:
         return result
     if contradicted := _contradicted(whole):
@@ -243,8 +249,8 @@ def _of_the_better_beginning(
     have been the one to begin with, of one without the first, if its causes are believed and fit better.  Where it has
     values of each run to which a form that is the same in all runs may have led, of one without such values."""
     result, found = answered(hypotheses, ())
-    if not hooks.stop() and (tag := of_one_form(result)):
-        hooks.on_phase(f"looking again for one {tag} in all runs")
+    if not hooks.stop() and (tag := of_one_form(result) or misleading(result)):
+        hooks.on_phase(f"looking again without {tag} of each run")
         spreads, bench.spreads = bench.spreads, {}
         other, others = answered([one for one in hypotheses if not one.by], ())
         if tells_as_well(other, result):

@@ -60,9 +60,9 @@ def _rate(words: str) -> Parameter:
         null=float("inf"),
         low=0.0,
         chart="reciprocal",
-        bounds=lambda ship: (0.0, 2.0 * ship.L / ship.U),
+        bounds=lambda ship: (0.0, 4.0 * ship.L / ship.U),
         typical=lambda ship: 0.9 * ship.L / ship.U,
-        bounds_source="a rudder that takes half the time of a ship length for 15 deg",
+        bounds_source="a rudder that takes the time of a ship length for 15 deg",
     )
 
 

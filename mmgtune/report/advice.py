@@ -122,9 +122,10 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
     where = clean(data.get("out") or "RUN").rstrip("/")
     extended = shlex.quote(f"{where}/profile.toml")
     items = []
-    if data["causes"]:
-        causes = " and ".join(clean(cause["effect"]) for cause in data["causes"])
-        day = [clean(cause["effect"]) for cause in data["causes"] if of_the_day(cause["effect"])]
+    kept = [cause for cause in data["causes"] if not cause.get("by_run")]  # the others are in no profile
+    if kept:
+        causes = " and ".join(clean(cause["effect"]) for cause in kept)
+        day = [clean(cause["effect"]) for cause in kept if of_the_day(cause["effect"])]
         items.append(
             (f"See the model with {causes} on every trial", f"mmgtune simulate -p {extended} --trials {trials[3:]}")
         )
@@ -145,7 +146,7 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
     if data["verdict"] == "none":
         reason = "Nothing is missing from the model that these trials show: fit its coefficients to them"
         items.append((reason, f"mmgtune fit {profile} {trials}"))
-    elif data["causes"]:
+    elif kept:
         items.append(
             ("Look for more, from the profile with what was found", f"mmgtune diagnose -p {extended} {trials}")
         )

@@ -65,6 +65,15 @@ def test_documents_say_what_they_are(asked, kind, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []  # also of the folder that a dry run would take
 
 
+@pytest.mark.parametrize(("named", "warned"), [((), True), (("-p", "suzaku"), False)])
+def test_trials_that_name_no_ship_are_of_the_bundled_one_in_silence_only_if_she_is_named(named, warned, tmp_path):
+    for trial in load_trials("suzaku").trials.values():
+        write_trial(replace(trial, ship=""), tmp_path / f"{trial.id}.parquet")
+    ended = typed("fit", *named, "-t", tmp_path, "--dry-run")
+    assert ended.code == 0
+    assert ("the trials do not say which ship they are of: M.V. SUZAKU" in ended.err) is warned
+
+
 def test_help_imports_nothing_heavy():
     code = (
         "import sys\nsys.argv = ['mmgtune', '--help']\nfrom mmgtune.cli import main\n"

@@ -51,6 +51,7 @@ class Answer:
     interrupted: bool = False
     kin: bool = False
     causes: tuple = ()
+    traces: tuple = ()
 
     @property
     def names_causes(self):

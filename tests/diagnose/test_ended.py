@@ -68,7 +68,15 @@ def test_ends_in_words(ended, said):
 def test_it_is_said_before_what_cannot_be_named(monkeypatch):
     monkeypatch.setattr(saying, "_of_the_unknown", lambda answer: saying.Said("Something is wrong.", "Why."))
     answer = SimpleNamespace(
-        between=(), together=None, verdict="unexplained", contradicted="", jumped={"a": 12.0}, ended={"u": 2.6}
+        between=(),
+        together=None,
+        verdict="unexplained",
+        contradicted="",
+        jumped={"a": 12.0},
+        ended={"u": 2.6},
+        causes=(),
+        misread={},
+        leftover=SimpleNamespace(misread={}),
     )
     first, why, *_ = saying.said(answer)
     assert first == (

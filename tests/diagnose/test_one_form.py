@@ -5,16 +5,17 @@ from types import SimpleNamespace
 
 import pytest
 
-from mmgtune.diagnose.answering.one_form import of_one_form, tells_as_well
+from mmgtune.diagnose.answering.one_form import misleading, of_one_form, tells_as_well
 
 run = importlib.import_module("mmgtune.diagnose.run")  # the package has a function of a like name
 
 
 def answer(after=0.05, *, runs=True, candidates=(), named=True, n=1):
     """What the rule sees of an answer of a gain of each run."""
-    cause = SimpleNamespace(tag="rudder-gain", runs=SimpleNamespace(variant=("factor",)) if runs else None)
+    of = SimpleNamespace(variant=("factor",)) if runs else None
+    cause = SimpleNamespace(tag="rudder-gain", runs=of, gain_test=0.9)
     gain = SimpleNamespace(J=(5.0, after))
-    return SimpleNamespace(names_causes=named, causes=(cause,) * n, gain=gain, candidates=candidates)
+    return SimpleNamespace(names_causes=named, causes=(cause,) * n, gain=gain, candidates=candidates, traces=())
 
 
 def form(J_test, parameters=("factor", "curve"), effect="rudder-gain", by=""):
@@ -49,6 +50,25 @@ def test_without_test_trials_nothing_is_told():
     assert not tells_as_well(answer(0.2, runs=False, named=False), answer(0.05))
 
 
+@pytest.mark.parametrize(
+    ("runs", "gain_test", "of_trace", "harmful", "tag"),
+    [
+        (True, -1.03, False, False, "loading"),  # an engine that gives way, and play of the linkage
+        (True, 0.6, False, False, ""),
+        (True, None, False, False, ""),
+        (False, -1.03, False, False, ""),
+        (False, 0.9, True, True, "wind"),
+        (False, 0.9, True, False, ""),
+        (False, 0.9, False, True, ""),
+    ],
+)
+def test_values_of_each_run_that_tell_what_is_held_out_worse_mislead(runs, gain_test, of_trace, harmful, tag):
+    cause = SimpleNamespace(tag="loading", runs=runs or None, gain_test=gain_test)
+    trace = SimpleNamespace(cause=SimpleNamespace(tag="wind", runs=of_trace or None))
+    trace.contribution = SimpleNamespace(harmful=harmful)
+    assert misleading(SimpleNamespace(causes=(cause,), traces=(trace,))) == tag
+
+
 @pytest.mark.parametrize(("after", "taken"), [(0.2, True), (0.6, False)])
 def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken):
     """A blade that lags by up to 15 % at 35 deg was a gain of each run, 0.87 to 0.97, which no extended profile has."""
@@ -72,4 +92,4 @@ def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken
     assert found == ((second, "second") if taken else (first, "first"))
     assert asked == [["", "trial", "group"], [""]]
     assert bench.spreads == {"found": 2 if taken else 1}  # those of what is answered
-    assert said == ["looking again for one rudder-gain in all runs"]
+    assert said == ["looking again without rudder-gain of each run"]

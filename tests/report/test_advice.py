@@ -231,3 +231,14 @@ def test_a_fit_that_misses_held_out_trials_is_to_be_diagnosed(misses: bool) -> N
     }  # fmt: skip
     commands = [command for _, command in advice.after_fit(data)]
     assert any(command.startswith("mmgtune diagnose") for command in commands) is misses
+
+
+@pytest.mark.parametrize(("by_run", "kept"), [(None, True), ({"by": "trial"}, False)])
+def test_what_differs_from_run_to_run_is_in_no_profile(by_run: dict[str, str] | None, kept: bool) -> None:
+    """The report sent to a calm.toml that a current of each run leaves none of."""
+    cause = {"effect": "current", "by_run": by_run}
+    data = {"causes": [cause], "verdict": "found", "out": "RUN", "profile": {"path": "suzaku"}, "trials": {"path": "t"}}
+    said = [" ".join(pair) for pair in advice.after_diagnosis(data)]
+    assert any("calm.toml" in one for one in said) is kept
+    assert any("See the model with current" in one for one in said) is kept
+    assert any("mmgtune diagnose -p RUN/profile.toml" in one for one in said) is kept

@@ -19,6 +19,7 @@ from ...phrases import listed
 from ...profile import ShipProfile
 from ...trial import Coverage, Trial
 from ..bench.hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
+from ..bench.inputs import unsteady
 from ..bench.of_hull import in_words as explained_in_words
 from ..bench.workbench import Point, Workbench
 from ..causes.belief import MOSTLY, TOLD
@@ -219,7 +220,7 @@ class Judge:
         if len(found.causes) == 1:
             rivals = [_not_refuted(result, rivals[0])]
         groups = tuple(
-            (cause.tag, *(rival.hypothesis.tag for rival in of))
+            tuple(dict.fromkeys([cause.tag, *(rival.hypothesis.tag for rival in of)]))
             for cause, of in zip(found.causes, rivals, strict=True)
             if of
         )
@@ -359,13 +360,14 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
 
 
 def _of_kin(result: Diagnosis, found: Found) -> list[Refit]:
-    """The effect that acts much like a single cause and may be meant, where this leaves more than noise, be it what
-    gusts may leave of values of each run, which bend to what there is."""
+    """The effect that acts much like a single cause and may be meant, where this leaves more than noise: of wind or
+    waves with what their own gusts may leave, of values of each run, which bend to what there is, be it that alone."""
     (cause,), left = found.causes, result.leftover.unknown
     if left > OF_ANOTHER_FORM:
         step = step_of(found, cause)
         return kin_among(step.refits, cause.tag) if step else []
-    off = left > A_LITTLE_OFF or (bool(cause.by) and result.chi2[1] > 1.0 + OF_RUNS_OFF)
+    gusty = left + result.leftover.left_open if unsteady(cause.effect) else left
+    off = gusty > A_LITTLE_OFF or (bool(cause.by) and result.chi2[1] > 1.0 + OF_RUNS_OFF)
     return kin_among(found.steps[0].refits, cause.tag, NEARLY_ALL) if off else []
 
 

@@ -1,7 +1,8 @@
-"""Values of an effect that differ from run to run, where a form of it that is the same in all runs tells as much.
+"""Values of an effect that differ from run to run, where what is the same in all runs tells as much.
 
 A blade that falls behind its indicator the more, the larger the angle, is a gain of the rudder that differs between
-turns of 35° and zigzags of 10°: values of each run bend to it, and say nothing of the next run.
+turns of 35° and zigzags of 10°: values of each run bend to it, and say nothing of the next run.  An engine that loses
+revolutions in turns is a loading that does, and what that bends to hides what else there is.
 """
 
 from __future__ import annotations
@@ -25,6 +26,14 @@ def of_one_form(result: Diagnosis) -> str:
     forms = [one for one in result.candidates if one.effect == cause.tag and not one.by and own < set(one.parameters)]
     told = max((told_on_test(result, one.J_test) for one in forms), default=0.0)
     return cause.tag if told > 0.0 and told >= AS_UNSEEN * told_on_test(result, result.gain.J[1]) else ""
+
+
+def misleading(result: Diagnosis) -> str:
+    """Tag of an effect with values of each run that was found first, or set aside, and tells what is held out worse; ""
+    where there is none."""
+    causes = [one.tag for one in result.causes if one.runs and one.gain_test is not None and one.gain_test < 0.0]
+    traces = [one.cause.tag for one in result.traces if one.cause.runs and one.contribution.harmful]
+    return next(iter([*causes, *traces]), "")
 
 
 def tells_as_well(other: Diagnosis, result: Diagnosis) -> bool:

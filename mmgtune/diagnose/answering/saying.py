@@ -10,6 +10,7 @@ from ...units import DEG
 from ..bench.of_hull import AS_WELL
 from ..causes.belief import TOLD
 from ..evidence.leftover import change_in_words, in_words
+from ..evidence.misread import in_words as misread_in_words
 from ..held_out.gain import MOST
 from ..signatures.retuned import besides, far_off, weighed
 from ..signatures.retuned import in_words as moved_in_words
@@ -60,7 +61,8 @@ def said(answer: Answer) -> Said:
     if answer.verdict == "found" and not answer.causes:
         return Said(" ".join(["No cause that is the same in all voyages shows.", *told]))
     more = [*told, *([answer.together.sentence] if answer.together else [])]
-    of_sensors = "; ".join(filter(None, (jumps_in_words(answer.jumped), ends_in_words(answer.ended))))
+    misread = misread_in_words(answer.misread or answer.leftover.misread) if answer.causes else ""
+    of_sensors = "; ".join(filter(None, (jumps_in_words(answer.jumped), ends_in_words(answer.ended), misread)))
     apart = f"{capital(of_sensors)}. Apart from that: " if of_sensors else ""
     if answer.verdict == "unexplained":
         unknown = _of_the_unknown(answer)
@@ -71,7 +73,7 @@ def said(answer: Answer) -> Said:
         one = _of_none(answer)
         return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
     beside = ""
-    if answer.causes and answer.verdict != "interrupted":
+    if answer.causes and answer.verdict != "interrupted" and not answer.gain.form_is_off:
         far = moved_in_words(answer.moved)
         beside = _joined(f"Re-tuned beside that: {far}." if far else "", weighed(answer.moved))
     return Said(" ".join([apart + _of_causes(answer), *more]), beside)
@@ -231,7 +233,8 @@ def _of_the_unknown(answer: Answer) -> Said:
             "testing, more than coefficients known no better would."
         )
     if answer.of_a_sensor:
-        told = "; ".join(change_in_words(*one) for one in answer.leftover.changed.items())
+        changed = (change_in_words(*one) for one in answer.leftover.changed.items())
+        told = "; ".join(filter(None, (*changed, misread_in_words(answer.misread or answer.leftover.misread))))
         return Said(f"Something is wrong with a sensor, and no known cause shows: {told}.")
     excess = answer.leftover.unknown
     left = (

@@ -13,6 +13,7 @@ from ...trial import Coverage
 from ..causes.belief import MOSTLY, Belief
 from ..causes.cause import Candidate, Cause, Detectability, Trace
 from ..causes.doubted import Doubted, Leading
+from ..evidence.misread import Misread
 from ..evidence.whereabouts import Whereabouts
 from ..record import Record, kind_of, record_of
 from ..searching.instead import Instead
@@ -53,6 +54,7 @@ class Answer(Belief, Plotted):
     swell: str = ""
     jumped: Mapping[str, float] = field(default_factory=dict)
     ended: Mapping[str, float] = field(default_factory=dict)
+    misread: Misread = field(default_factory=dict)
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
     read_off: Mapping[str, float] = field(default_factory=dict)
@@ -74,7 +76,8 @@ class Answer(Belief, Plotted):
     def leaves_shape(self) -> bool:
         """Whether what is left shows something that is wrong, here or on the trials kept for testing."""
         left = self.leftover
-        return left.structured or bool(left.offsets or left.changed) or self.misses_test
+        odd = left.offsets or left.changed or left.misread or self.misread
+        return left.structured or bool(odd) or self.misses_test
 
     @property
     def kind(self) -> str:
@@ -94,15 +97,18 @@ class Answer(Belief, Plotted):
 
     @property
     def of_a_sensor(self) -> bool:
-        """Whether a log whose factor changes within trials shows, and no cause worth speaking of."""
-        return bool(self.leftover.changed) and not self.tells_a_part
+        """Whether a log whose factor changes within trials, or that is off in single runs, shows, and no cause worth
+        speaking of."""
+        odd = self.leftover.changed or self.leftover.misread or self.misread
+        return bool(odd) and not self.tells_a_part
 
     @property
     def misses_test(self) -> bool:
         """Whether the model fits the trials looked at without any cause, and those kept for testing show that something
         is wrong all the same."""
         left = self.leftover
-        fits = not (self.causes or left.structured or left.offsets or left.changed or self.choice)
+        odd = left.structured or left.offsets or left.changed or left.misread
+        fits = not (self.causes or odd or self.choice)
         return fits and self.gain.missed
 
     @property

@@ -128,7 +128,8 @@ class Belief:
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
         if self._n_terms < 2:
-            if self.differs_by_run and self._faint and self.gain.surely_removed < AT_ALL:
+            least = AT_ALL if self._faint else 0.0
+            if self.differs_by_run and self.gain.surely_removed < least and (self._faint or self.leftover.structured):
                 return NEXT_TO_NOTHING
             if self.gain.share_removed >= TOLD:
                 return ""
@@ -149,7 +150,7 @@ class Belief:
         several = sum(bool(cause.runs) for cause in self.causes) > 1
         if several and (terms > 2 or not self.explains_all):
             return "more than one of them differs from run to run"
-        if self.gain.share_removed < TOLD:
+        if self.gain.share_removed < TOLD and not (self.gain.tells_nothing and self._all_by_each):
             return "it removes little of the error where nothing was fitted"
         if self.gain.surely_removed < AT_ALL and self.differs_by_run:
             return NEXT_TO_NOTHING
@@ -166,7 +167,7 @@ class Belief:
         """Whether the causes are not believed, do not tell what is held out, or leave too much that has a shape."""
         doubted = self.gain.worse or self.differs_by_run or self._misses_each
         untold = self.gain.remains and (self.rest >= NOTICED or doubted)
-        return untold or bool(self.unclear) or self._mostly_left
+        return untold or bool(self.unclear) or self._mostly_left or self._of_a_misread_log
 
     @property
     def _n_terms(self) -> int:
@@ -273,15 +274,32 @@ class Belief:
         return told and not bends and not self.leftover.structured
 
     @property
+    def _all_by_each(self) -> bool:
+        """Whether causes, none of them with values of each run, leave nothing where they were found, and each of them
+        is needed for it."""
+        whole = self.explained_share >= ALL and not (self.leftover.structured or self.differs_by_run)
+        return whole and all(one.seen >= NEEDED for _, one in self.contributions)
+
+    @property
     def explains_nearly_all(self) -> bool:
         """Whether the causes remove nearly all of the error beyond noise, on held-out trials too."""
         return self.explained_share >= MOSTLY and self.gain.share_removed >= MOST
 
     @property
     def _mostly_left(self) -> bool:
-        """Whether what is left has a shape and is too much beside what the causes explain."""
+        """Whether what is left has a shape, or is as much as the noise, and is too much beside what the causes
+        explain."""
+        mostly = self.explained_share < MOSTLY
         bent = self.differs_by_run and self.leftover.excess > BENT and not self.explains_all
-        return self.leftover.structured and (self.explained_share < MOSTLY or bent)
+        return (self.leftover.unknown > BENT and mostly) or (self.leftover.structured and (mostly or bent))
+
+    @property
+    def _of_a_misread_log(self) -> bool:
+        """Whether a cause is an error of a log that is off otherwise in single runs, or leaves more than noise in one
+        sensor alone."""
+        left = self.leftover
+        of_another_form = left.alone and left.unknown > LEFT_ALONE and self.explained_share < MOSTLY
+        return bool(left.misread or of_another_form) and any(cause.of_one_log for cause in self.causes)
 
 
 def _least_may_be_form(causes: Sequence[Cause], brought: Sequence[Contribution]) -> bool:

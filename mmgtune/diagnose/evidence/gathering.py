@@ -64,6 +64,7 @@ def error_of(bench: Workbench, found: Found, before: Leftover, told: Leftover) -
     where = whereabouts(_forces(bench, found.base), by_run, ranked, offsets, of_runs)
     where = replace(where, channel=told.alone if told.alone == before.alone else "")
     changed = {trial: f"the factor of the {LOGGED[name]} changes" for name, of in told.changed.items() for trial in of}
+    changed |= {trial: f"the {LOGGED[name]} is misread" for name, of in told.misread.items() for trial in of}
     return replace(where, odd=changed) if changed else where
 
 

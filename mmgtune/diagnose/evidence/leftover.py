@@ -28,6 +28,7 @@ from ..bench.noise import by_channel, rows_of_channels
 from ..bench.workbench import Point, Workbench, least_noise
 from ..signatures.linear import linearise
 from . import FEWEST_BLOCKS, share_explained
+from .misread import Misread, misread_in
 
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
@@ -100,6 +101,7 @@ class Leftover(Brief):
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     changed    channels, "u" and "r", whose factor changes within trials, by their ids: of those alone whose noise as
                estimated lasts so long that it hides that
+    misread    logs that are off in single runs, see ``misread_in``; of whole runs alone
     left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
     slows      by channel, variance that the noise as estimated has in a part that fades slowly, as a share of the white
                one: part of ``channels``, and noise of the sensors where what is left has no structure; 0 of a channel
@@ -117,6 +119,7 @@ class Leftover(Brief):
     slows: Mapping[str, float] = field(default_factory=dict)
     at_most: Mapping[str, float] = field(default_factory=dict)
     changed: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    misread: Misread = field(default_factory=dict)
 
     @property
     def unknown(self) -> float:
@@ -168,7 +171,8 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
     residuals = residuals_of(bench, point)
     rough = _rough(bench)
-    level = np.where(rough > 0.0, rough, _level(bench, residuals))
+    white = _level(bench, residuals)
+    level = np.where(rough > 0.0, rough, white)
     left_open = _left_open(bench, point)
     excess, excused = {}, {}
     for k, name in enumerate(STATES):
@@ -191,6 +195,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         slows={name: slow for name, (slow, _) in slow.items()},
         at_most={name: at_most for name, (_, at_most) in slow.items()},
         changed=_changed(bench),
+        misread={} if any(one.part_of for one in bench.trials) else misread_in(bench.trials, residuals, white),
     )
 
 

@@ -144,6 +144,11 @@ class Gain(Brief):
         return self.held_out == "test" and far and not self.remains
 
     @property
+    def tells_nothing(self) -> bool:
+        """Whether uncertain coefficients may be behind all of the error, that without the causes too."""
+        return float(self.excess[:, 0].sum()) <= self.unsure
+
+    @property
     def too_few(self) -> bool:
         """Whether the other runs predict a run badly that is fitted well together with them: they are too few for what
         is re-tuned."""

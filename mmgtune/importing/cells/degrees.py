@@ -49,7 +49,7 @@ def degrees(texts: Any) -> FloatArray:
         whole = np.where(in_one, numbers_in(found[1], ","), whole)
         minutes = np.where(in_one, numbers_in(found[2], ","), minutes)
         seconds = np.where(in_one, 0.0, seconds)
-    right = np.isfinite(whole) & ~(minutes >= 60.0) & ~(seconds >= 60.0) & ~plain
+    right = np.isfinite(whole) & ~(minutes > 60.0) & ~(seconds > 60.0) & ~plain  # loggers round up to 60
     right &= (side.str.len() <= 1).to_numpy(dtype=bool, na_value=False)
     size = whole + np.nan_to_num(minutes) / 60.0 + np.nan_to_num(seconds) / 3600.0
     negative = side.isin(["S", "W"]).to_numpy(dtype=bool) | (parts[1] == "-").to_numpy(dtype=bool, na_value=False)
@@ -57,7 +57,7 @@ def degrees(texts: Any) -> FloatArray:
 
 
 def of_ddmm(numbers: FloatArray) -> FloatArray:
-    """Degrees (n_rows,) of numbers that hold degrees and minutes in one, 5206.0001; NaN where the minutes are 60 or
-    more."""
+    """Degrees (n_rows,) of numbers that hold degrees and minutes in one, 5206.0001; NaN where the minutes are more
+    than 60."""
     whole, minutes = np.divmod(np.abs(numbers), 100.0)
-    return np.copysign(np.where(minutes < 60.0, whole + minutes / 60.0, np.nan), numbers)
+    return np.copysign(np.where(minutes <= 60.0, whole + minutes / 60.0, np.nan), numbers)

@@ -1,0 +1,157 @@
+"""Logs that are off in single runs: told apart from noise, and from what moves the ship."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune import DiagnoseOptions, diagnose, load_trials
+from mmgtune.backends import STATES, Integrator
+from mmgtune.diagnose.evidence.misread import in_words, is_of_few, misread_in, slow, without
+from mmgtune.diagnose.folder import write_diagnosis
+from mmgtune.effects import find_effect
+from mmgtune.motions import simulate_trials
+from mmgtune.profile import load_profile
+from mmgtune.units import DEG
+from tests.diagnose.sensors import NOISE, logged
+
+TRIALS = [*load_trials("suzaku").trials.values()][:5]
+
+
+def seen(change=lambda k, name, values: values, noise=1.0):
+    """Trials as sensors show them, and what a model that is right leaves; of each run by ``change`` before noise."""
+    rng = np.random.default_rng(1)
+    trials, residuals = [], []
+    for k, trial in enumerate(TRIALS):
+        clean = trial.motion
+        shown = np.column_stack([change(k, name, clean[:, i].copy()) for i, name in enumerate(STATES)])
+        shown = shown + noise * NOISE * rng.standard_normal(shown.shape)
+        trials.append(replace(trial, **dict(zip(STATES, shown.T, strict=True))))
+        residuals.append(clean - shown)
+    return trials, residuals, NOISE
+
+
+def of_run(k, name, change):
+    """A change of one channel of one run."""
+    return lambda i, channel, values: change(values) if (i, channel) == (k, name) else values
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "factor"),
+    [
+        ("r", lambda r: -r, -1.0),
+        ("v_m", lambda v: 0.0 * v, 0.0),
+        ("r", lambda r: 1.3 * r, 1.3),
+        ("u", lambda u: 0.9 * u, 0.9),
+    ],
+)
+def test_a_log_that_is_wrong_in_one_run_is_told_with_its_factor(name, change, factor):
+    found = misread_in(*seen(of_run(2, name, change)))
+    assert list(found) == [name]
+    assert found[name] == {TRIALS[2].id: pytest.approx(factor, abs=0.03)}
+
+
+def test_a_log_that_stood_still_from_some_time_on_is_told_without_a_factor():
+    def stuck(u):
+        return np.where(np.arange(len(u)) > len(u) // 3, u[0], u)
+
+    found = misread_in(*seen(of_run(1, "r", lambda r: r + 3.0 * DEG * np.sin(np.linspace(0.0, 40.0, len(r))))))
+    assert found == {"r": {TRIALS[1].id: None}}
+    assert list(misread_in(*seen(of_run(0, "u", stuck)))) == ["u"]
+
+
+def test_another_scale_in_every_run_is_told():
+    factors = [1.3, 1.4, 0.6, 0.7, 1.8]
+    found = misread_in(*seen(lambda k, name, values: factors[k] * values if name == "r" else values))
+    assert found == {"r": {one.id: pytest.approx(by, abs=0.03) for one, by in zip(TRIALS, factors, strict=True)}}
+    of_all = "the log of the yaw rate shows 0.60 to 1.80 times the motion that all else shows in 5 runs"
+    assert in_words(found) == of_all
+    assert not is_of_few(found, len(TRIALS))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda k, name, values: values,
+        of_run(3, "v_m", lambda v: v + 0.2 * np.random.default_rng(4).standard_normal(len(v))),  # white: a loose plug
+        lambda k, name, values: 1.02 * values,
+        lambda k, name, values: values + (k == 2) * 30.0 * NOISE[STATES.index(name)],  # all else says the same
+        lambda k, name, values: values + (name == "u") * slowly(len(values), k),  # of a sensor, in all runs
+        lambda k, name, values: np.full_like(values, np.nan) if name == "v_m" else values,
+    ],
+    ids=["nothing", "white noise", "a little", "all channels", "slow noise", "not measured"],
+)
+def test_noise_and_what_moves_the_ship_are_no_misread_logs(change):
+    assert misread_in(*seen(change)) == {}
+
+
+def slowly(n, seed):
+    """Noise that fades in 20 samples, five times the white one of u."""
+    white, found = np.random.default_rng(seed).standard_normal(n), np.zeros(n)
+    for k in range(1, n):
+        found[k] = 0.95 * found[k - 1] + np.sqrt(1.0 - 0.95**2) * white[k]
+    return 5.0 * NOISE[STATES.index("u")] * found
+
+
+def test_what_is_slow_is_counted_beyond_white_noise_of_its_own():
+    white = np.random.default_rng(0).standard_normal((4000, 2))
+    white[:, 1] += 3.0
+    np.testing.assert_allclose(slow(white, np.ones(2)), [0.0, 3.0], atol=0.3)
+    assert slow(np.full((9, 1), np.nan), np.ones(1)) == 0.0
+    assert slow(np.ones((9, 1)), np.zeros(1)) == 0.0
+
+
+@pytest.mark.parametrize(("factor", "first"), [(0.5, 2.0), (0.0, 1.0), (None, 1.0), (-1.0, -1.0)])
+def test_what_is_misread_is_left_out_but_for_where_it_begins(factor, first):
+    trial = replace(TRIALS[0], u=np.ones(TRIALS[0].n_samples))
+    right = without(trial, {"u": {trial.id: factor}, "r": {"another": -1.0}})
+    assert right.u[0] == first
+    assert np.isnan(right.u[1:]).all()
+    assert np.array_equal(right.r, trial.r)
+    assert without(trial, {}) is trial
+    assert np.isnan(without(trial, {"v_m": {trial.id: factor}}).v_m[1:]).all()
+
+
+@pytest.mark.parametrize(("runs", "few"), [(1, True), (2, True), (3, False)])
+def test_the_others_show_what_is_right(runs, few):
+    of_runs = dict.fromkeys("abc"[:runs], -1.0)
+    assert is_of_few({"r": of_runs, "u": {"a": 0.9}}, 5) is few
+    assert not is_of_few({}, 5)
+
+
+@pytest.mark.parametrize(
+    ("runs", "said"),
+    [
+        ({"a": -1.02}, "the log of the sway velocity shows -1.02 times the motion that all else shows in a"),
+        ({"a": -0.001}, "the log of the sway velocity shows 0.00 times the motion that all else shows in a"),
+        ({"a": None, "b": None}, "the log of the sway velocity shows another motion than all else in a and b"),
+        (dict.fromkeys("abcd"), "the log of the sway velocity shows another motion than all else in 4 runs"),
+    ],
+)
+def test_what_is_said(runs, said):
+    assert in_words({"v_m": runs}) == said
+    assert in_words({}) == ""
+
+
+@pytest.mark.parametrize("offset", [0.0, 2.0 * DEG])
+def test_the_answer_names_the_log_and_the_run(offset, tmp_path):
+    """ "Nothing is wrong" was said of a run whose yaw rate had the other sign, as noise that fades slowly."""
+    profile, rng = load_profile("suzaku"), np.random.default_rng(3)
+    sailed = simulate_trials(
+        profile, [replace(one, delta=one.delta + offset) for one in TRIALS], integrator=Integrator("rk4")
+    )
+    made = [logged(trial, motion, rng) for trial, motion in zip(TRIALS, sailed, strict=True)]
+    made[1] = replace(made[1], r=-made[1].r)
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
+    result = diagnose(profile, made, asked)
+    shown = f"the log of the yaw rate shows -1.00 times the motion that all else shows in {made[1].id}"
+    assert result.to_dict()["unexplained"]["misread"] == {"r": {made[1].id: pytest.approx(-1.0, abs=0.05)}}
+    if offset:
+        assert [cause.effect for cause in result.causes] == [find_effect("rudder-offset")]
+        assert result.verdict == "found"
+        assert result.sentence().startswith(f"T{shown[1:]}. Apart from that: The rudder")
+    else:
+        assert result.verdict == "unexplained"
+        assert result.sentence() == f"Something is wrong with a sensor, and no known cause shows: {shown}."
+    document = write_diagnosis(result, tmp_path / "run")
+    assert document["verdict"] == result.verdict
