@@ -43,8 +43,8 @@ from .bench.hypotheses import Hypothesis, known_causes, not_looked_for, of_runs
 from .bench.workbench import Workbench, make_workbench
 from .causes.belief import TOLD
 from .causes.contributions import removed_by, set_aside
-from .evidence.leftover import NOTICED, SWELLS, beside_swell, leftover
-from .evidence.misread import is_of_few, without
+from .evidence.leftover import NOTICED, SWELLS, beside_swell, leftover, motions_of
+from .evidence.misread import LeftOut, is_of_few, without
 from .held_out.together import Together
 from .held_out.unseen import Unseen
 from .result import Diagnosis
@@ -158,8 +158,12 @@ def _looked_at(
     options: DiagnoseOptions,
     hooks: Hooks,
     provenance: dict[str, Any],
+    gone: LeftOut | None = None,
 ) -> Diagnosis:
-    """The answer of the trials that are not kept for testing; how long it took is for the caller to say."""
+    """The answer of the trials that are not kept for testing; how long it took is for the caller to say.
+
+    gone  logs that were found to be misread, in whose place the trials have gaps
+    """
     odd = [f"{capital(words)}." for words in another_ship(trials.ship, profile.id)]
     odd += oddities(trials.trials, profile.L_pp) if choice is None else []
     odd += _derived(trials.trials)
@@ -220,8 +224,11 @@ def _looked_at(
     if is_of_few(misread := result.leftover.misread, len(seen)) and not hooks.stop():
         hooks.on_phase("looking again without logs that are misread")
         right = replace(given, trials={id: without(trial, misread) for id, trial in whole.items()})
-        again = _looked_at(profile, right, choice, options, hooks, provenance)
-        return replace(again, misread={**misread, **again.misread})
+        wrong = {id: trial for id, trial in whole.items() if any(id in runs for runs in misread.values())}
+        return _looked_at(profile, right, choice, options, hooks, provenance, LeftOut(misread, wrong).beside(gone))
+    if gone:
+        shown = {trial.id: states for trial, states in zip(bench.trials, motions_of(bench, found.final), strict=True)}
+        result = replace(result, misread=gone.as_all_else_shows(shown))
     if result.verdict not in ("unexplained", "none") or choice is not None:
         return result
     if contradicted := _contradicted(whole):

@@ -7,7 +7,7 @@ import pytest
 
 from mmgtune import DiagnoseOptions, diagnose, load_trials
 from mmgtune.backends import STATES, Integrator
-from mmgtune.diagnose.evidence.misread import in_words, is_of_few, misread_in, slow, without
+from mmgtune.diagnose.evidence.misread import LeftOut, in_words, is_of_few, misread_in, slow, without
 from mmgtune.diagnose.folder import write_diagnosis
 from mmgtune.effects import find_effect
 from mmgtune.motions import simulate_trials
@@ -60,11 +60,12 @@ def test_a_log_that_stood_still_from_some_time_on_is_told_without_a_factor():
     assert list(misread_in(*seen(of_run(0, "u", stuck)))) == ["u"]
 
 
-def test_another_scale_in_every_run_is_told():
-    factors = [1.3, 1.4, 0.6, 0.7, 1.8]
+def test_another_scale_from_run_to_run_is_told():
+    factors = [1.0, 1.4, 0.6, 0.7, 1.8]
     found = misread_in(*seen(lambda k, name, values: factors[k] * values if name == "r" else values))
-    assert found == {"r": {one.id: pytest.approx(by, abs=0.03) for one, by in zip(TRIALS, factors, strict=True)}}
-    of_all = "the log of the yaw rate shows 0.60 to 1.80 times the motion that all else shows in 5 runs"
+    told = {one.id: pytest.approx(by, abs=0.03) for one, by in zip(TRIALS, factors, strict=True) if by != 1.0}
+    assert found == {"r": told}
+    of_all = "the log of the yaw rate shows 0.60 to 1.80 times the motion that all else shows in 4 runs"
     assert in_words(found) == of_all
     assert not is_of_few(found, len(TRIALS))
 
@@ -75,11 +76,12 @@ def test_another_scale_in_every_run_is_told():
         lambda k, name, values: values,
         of_run(3, "v_m", lambda v: v + 0.2 * np.random.default_rng(4).standard_normal(len(v))),  # white: a loose plug
         lambda k, name, values: 1.02 * values,
+        lambda k, name, values: 1.3 * values if name == "r" else values,  # of a sensor
         lambda k, name, values: values + (k == 2) * 30.0 * NOISE[STATES.index(name)],  # all else says the same
         lambda k, name, values: values + (name == "u") * slowly(len(values), k),  # of a sensor, in all runs
         lambda k, name, values: np.full_like(values, np.nan) if name == "v_m" else values,
     ],
-    ids=["nothing", "white noise", "a little", "all channels", "slow noise", "not measured"],
+    ids=["nothing", "white noise", "a little", "a scale", "all channels", "slow noise", "not measured"],
 )
 def test_noise_and_what_moves_the_ship_are_no_misread_logs(change):
     assert misread_in(*seen(change)) == {}
@@ -110,6 +112,21 @@ def test_what_is_misread_is_left_out_but_for_where_it_begins(factor, first):
     assert np.array_equal(right.r, trial.r)
     assert without(trial, {}) is trial
     assert np.isnan(without(trial, {"v_m": {trial.id: factor}}).v_m[1:]).all()
+
+
+def test_factors_are_by_the_motion_that_was_fitted_to_all_else():
+    trial = TRIALS[0]
+    gone = LeftOut(
+        {"r": {trial.id: 1.13, "elsewhere": 0.9}, "u": {trial.id: None}}, {trial.id: trial, "elsewhere": trial}
+    )
+    of_all = gone.as_all_else_shows({trial.id: trial.motion / 1.3})
+    assert of_all == {"r": {trial.id: pytest.approx(1.3), "elsewhere": 0.9}, "u": {trial.id: None}}
+    assert gone.as_all_else_shows({trial.id: trial.motion[1:]}) == gone.misread  # in parts
+    before = LeftOut({"v_m": {"first": -1.0}, "r": {"first": 2.0}}, {"first": trial})
+    both = gone.beside(before)
+    assert both.misread == {"u": {trial.id: None}, "v_m": {"first": -1.0}, "r": {**gone.misread["r"], "first": 2.0}}
+    assert list(both.trials) == [trial.id, "elsewhere", "first"]
+    assert gone.beside(None) is gone
 
 
 @pytest.mark.parametrize(("runs", "few"), [(1, True), (2, True), (3, False)])

@@ -66,7 +66,8 @@ def test_values_of_each_run_that_tell_what_is_held_out_worse_mislead(runs, gain_
     cause = SimpleNamespace(tag="loading", runs=runs or None, gain_test=gain_test)
     trace = SimpleNamespace(cause=SimpleNamespace(tag="wind", runs=of_trace or None))
     trace.contribution = SimpleNamespace(harmful=harmful)
-    assert misleading(SimpleNamespace(causes=(cause,), traces=(trace,))) == tag
+    assert misleading(SimpleNamespace(names_causes=True, causes=(cause,), traces=(trace,))) == tag
+    assert misleading(SimpleNamespace(names_causes=False, causes=(cause,), traces=(trace,))) == ""
 
 
 @pytest.mark.parametrize(("after", "taken"), [(0.2, True), (0.6, False)])

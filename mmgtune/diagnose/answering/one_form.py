@@ -29,8 +29,10 @@ def of_one_form(result: Diagnosis) -> str:
 
 
 def misleading(result: Diagnosis) -> str:
-    """Tag of an effect with values of each run that was found first, or set aside, and tells what is held out worse; ""
-    where there is none."""
+    """Tag of an effect with values of each run that is among the causes named, or was set aside, and tells what is held
+    out worse; "" where there is none."""
+    if not result.names_causes:
+        return ""
     causes = [one.tag for one in result.causes if one.runs and one.gain_test is not None and one.gain_test < 0.0]
     traces = [one.cause.tag for one in result.traces if one.cause.runs and one.contribution.harmful]
     return next(iter([*causes, *traces]), "")

@@ -276,9 +276,14 @@ def _slow(bench: Workbench, name: str, level: float, excess: float) -> tuple[flo
 
 def residuals_of(bench: Workbench, point: Point) -> list[FloatArray]:
     """Simulated less measured by trial, (n_samples, 6), in SI units; NaN in gaps."""
+    return [own - trial.motion for own, trial in zip(motions_of(bench, point), bench.trials, strict=True)]
+
+
+def motions_of(bench: Workbench, point: Point) -> list[FloatArray]:
+    """Simulated motion by trial, (n_samples, 6), in SI units."""
     problem = bench.problem_of(point.names, point.integrator)
     states = problem.states(point.unit[:, None], point.offsets[:, None]).states
-    return [states[i, 0, : trial.n_samples] - trial.motion for i, trial in enumerate(bench.trials)]
+    return [states[i, 0, : trial.n_samples] for i, trial in enumerate(bench.trials)]
 
 
 def offsets_of(residuals: Sequence[FloatArray], sigma: FloatArray) -> dict[str, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ FAR = 4.0
 run, and in the channel in most runs, for its log to be wrong."""
 
 BY_FACTOR = 0.5
-"""Share of that error which another factor leaves at most where the log is off by that."""
+"""Share of that error which the run's own factor leaves at most where the log is off by that."""
 
 STANDS = 0.1
 """Factor below which a log stands still, and tells nothing of the beginning."""
@@ -45,13 +45,17 @@ def misread_in(trials: Sequence[Trial], residuals: Sequence[FloatArray], level: 
     found: dict[str, dict[str, float | None]] = {}
     for name in MISREADABLE:
         k = STATES.index(name)
-        usual = float(np.median(left[:, k]))
-        for trial, values, own in zip(trials, residuals, left, strict=True):
-            if own[k] <= FAR * max(1.0, float(np.delete(own, k).max())):
+        shown = [_by_factor(trial.motion[:, k], values[:, k]) for trial, values in zip(trials, residuals, strict=True)]
+        known = [factor for factor, _ in shown if factor is not None]
+        usual, most = float(np.median(known)) if known else 1.0, float(np.median(left[:, k]))
+        for trial, (factor, motion), values in zip(trials, shown, left, strict=True):
+            least = FAR * max(1.0, float(np.delete(values, k).max()))
+            # What is the same in all runs is an error of the sensor, and may be a cause.
+            own = min(values[k], _slow(trial.motion[:, k] - usual * motion, level[k]))
+            if factor is None or own <= least:
                 continue
-            factor, rest = _by_factor(trial.motion[:, k], values[:, k])
-            scaled = slow(rest[:, None], level[k : k + 1])[0] < BY_FACTOR * own[k]
-            if scaled or own[k] > FAR * usual:
+            scaled = _slow(trial.motion[:, k] - factor * motion, level[k]) < BY_FACTOR * own
+            if scaled or own > FAR * most:
                 found.setdefault(name, {})[trial.id] = factor if scaled else None
     return found
 
@@ -72,6 +76,33 @@ def without(trial: Trial, misread: Misread) -> Trial:
     return replace(trial, **kept) if kept else trial
 
 
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """Logs that are misread, and the trials as logged by their ids."""
+
+    misread: Misread
+    trials: Mapping[str, Trial]
+
+    def beside(self, others: LeftOut | None) -> LeftOut:
+        """These and others, which were left out before."""
+        if others is None:
+            return self
+        names = [name for name in MISREADABLE if name in self.misread or name in others.misread]
+        both = {name: {**self.misread.get(name, {}), **others.misread.get(name, {})} for name in names}
+        return LeftOut(both, {**self.trials, **others.trials})
+
+    def as_all_else_shows(self, motions: Mapping[str, FloatArray]) -> Misread:
+        """The logs with factors by the motion (n_samples, 6) of runs that a model shows which was fitted to all else;
+        unchanged of runs that were not looked at whole."""
+        return {name: {id: self._shown(name, id, motions) for id in runs} for name, runs in self.misread.items()}
+
+    def _shown(self, name: str, id: str, motions: Mapping[str, FloatArray]) -> float | None:
+        factor, logged, motion = self.misread[name][id], getattr(self.trials[id], name), motions.get(id)
+        if factor is None or motion is None or len(motion) != len(logged):
+            return factor
+        return _by_factor(logged, motion[:, STATES.index(name)] - logged)[0]
+
+
 def slow(values: FloatArray, level: FloatArray) -> FloatArray:
     """(n_channels,) deviation of residuals (n_samples, n_channels) beyond white noise of their own, over a level; 0 of
     what was not measured."""
@@ -86,12 +117,17 @@ def slow(values: FloatArray, level: FloatArray) -> FloatArray:
     return np.where(np.isfinite(found), found, 0.0)
 
 
-def _by_factor(measured: FloatArray, off: FloatArray) -> tuple[float, FloatArray]:
-    """How many times the motion a log shows (n_samples,), and what it is off by besides."""
+def _slow(values: FloatArray, level: float) -> float:
+    """Likewise of one channel (n_samples,)."""
+    return float(slow(values[:, None], np.array([level]))[0])
+
+
+def _by_factor(measured: FloatArray, off: FloatArray) -> tuple[float | None, FloatArray]:
+    """How many times the motion a log shows, None where there is no motion, and that motion (n_samples,)."""
     motion = measured + off
     known = np.isfinite(motion)
-    factor = float(measured[known] @ motion[known]) / max(float(motion[known] @ motion[known]), 1e-300)
-    return factor, measured - factor * motion
+    whole = float(motion[known] @ motion[known])
+    return (float(measured[known] @ motion[known]) / whole if whole > 0.0 else None), motion
 
 
 def in_words(misread: Misread) -> str:
