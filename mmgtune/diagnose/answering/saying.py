@@ -235,7 +235,9 @@ def _of_the_unknown(answer: Answer) -> Said:
     if answer.of_a_sensor:
         changed = (change_in_words(*one) for one in answer.leftover.changed.items())
         told = "; ".join(filter(None, (*changed, misread_in_words(answer.misread or answer.leftover.misread))))
-        return Said(f"Something is wrong with a sensor, and no known cause shows: {told}.")
+        without = "Without that log all others are fitted to the noise of the measurements."
+        fits = answer.misread and not (answer.causes or answer.leftover.noticed)
+        return Said(f"Something is wrong with a sensor, and no known cause shows: {told}.", without if fits else "")
     excess = answer.leftover.unknown
     left = (
         f"{_of_noise(excess)} of the measurements"

@@ -49,7 +49,8 @@ trials are asked whether it does any good."""
 
 FORM, FORM_IF_ROUGH, FORM_OF_TERM = 0.0005, 0.003, 0.02
 """Share of the error that a cause leaves whose form is 2 % off, one whose formula is no better than 5 %, and, to values
-that differ from run to run and bend to all that is left, one of many terms, which is the nearest to what there is."""
+that differ from run to run and bend to all that is left, one of many terms, which is the nearest to what there is; and,
+to such a term, any cause that is no error of a log: engines give way by laws of their own."""
 
 FORM_OF_HULL = 0.05
 """Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it: formulas of shallow
@@ -467,8 +468,12 @@ def _of(
 
 def _form_of_others(found: Found, cause: Hypothesis) -> float:
     """Share of the error that the other causes may leave by their form."""
-    if cause.effect.one_of_many and any(one.effect.rough and not one.effect.one_of_many for one in found.causes):
-        return FORM_OF_HULL
+    if cause.effect.one_of_many:
+        others = [one.effect for one in found.causes if not one.effect.one_of_many]
+        if any(one.rough for one in others):
+            return FORM_OF_HULL
+        if any(not isinstance(one, SensorEffect) for one in others):
+            return FORM_OF_TERM
     if cause.by and any(one.effect.one_of_many for one in found.causes):
         return FORM_OF_TERM
     return FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
