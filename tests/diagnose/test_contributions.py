@@ -225,8 +225,8 @@ def test_a_ship_lighter_than_her_profile_is_told_beside_waves(tmp_path):
     ],
 )
 def test_what_the_form_of_others_may_leave(tag, by, beside, share):
-    """In water of 1.35 draughts by another formula a hull term was found that was a part of its form; so it was beside an
-    engine of another law."""
+    """In water of 1.35 draughts by another formula a hull term was found that was a part of its form; so was one beside
+    an engine of another law."""
     cause, other = (
         Hypothesis(one, one.variants[0], by) for one, by in ((find_effect(tag), by), (find_effect(beside), ""))
     )
