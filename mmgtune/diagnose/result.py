@@ -169,7 +169,7 @@ class Diagnosis(Answer):
                 "left_open_by_inputs": self.leftover.left_open,
                 "by_channel": self.leftover.channels,
                 "changed_within": {name: list(ids) for name, ids in self.leftover.changed.items()},
-                "misread": {name: dict(runs) for name, runs in (self.misread or self.leftover.misread).items()},
+                "misread": {name: dict(runs) for name, runs in self.wrong_logs.items()},
                 "share_explained_by_causes": self.explained_share,
                 "correlation": self.leftover.alike,
                 "largest_share_by_one_quantity": {

@@ -27,10 +27,11 @@ from ..phrases import capital
 from ..profile import ShipProfile, with_all_effects
 from ..run_provenance import identity_of, make_provenance
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, VoyageSet, another_ship, oddities
+from ..trial import Trial, TrialSet, VoyageSet, another_ship, check_trials
 from ..trial.checks.control_checks import RUDDER_SIGN
+from ..trial.checks.finding import Finding
 from ..trial.checks.motion_checks import CONTRADICTED
-from ..trial.checks.set_checks import found_in
+from ..trial.checks.set_checks import found_in, told_of
 from ..trial.checks.swell import period_of, swings
 from ..trial.schema import MOTION
 from .answering.ended import in_words as ends_in_words
@@ -165,7 +166,8 @@ def _looked_at(
     gone  logs that were found to be misread, in whose place the trials have gaps
     """
     odd = [f"{capital(words)}." for words in another_ship(trials.ship, profile.id)]
-    odd += oddities(trials.trials, profile.L_pp) if choice is None else []
+    checked = check_trials(trials.trials, profile.L_pp) if choice is None else {}
+    odd += told_of(checked)
     odd += _derived(trials.trials)
     given, whole = trials, trials.trials
     off: dict[str, float] = {}
@@ -231,7 +233,7 @@ def _looked_at(
         result = replace(result, misread=gone.as_all_else_shows(shown))
     if result.verdict not in ("unexplained", "none") or choice is not None:
         return result
-    if contradicted := _contradicted(whole):
+    if contradicted := _contradicted(whole, checked):
         return replace(result, contradicted=contradicted, instead=None)
     if result.verdict == "none":
         return result
@@ -295,15 +297,16 @@ def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
     return [name for name in LEG_NAMES if name in there and name not in names]
 
 
-def _contradicted(trials: Mapping[str, Trial]) -> str:
-    """What the logs of most trials say against each other, which is to be put right before a cause is looked for."""
+def _contradicted(trials: Mapping[str, Trial], checked: Mapping[str, Sequence[Finding]]) -> str:
+    """What the logs of most trials say against each other, which is to be put right before a cause is looked for; by
+    what ``check_trials`` found in them."""
     first = "First put the logs right: in"
-    away, apart = found_in(trials, RUDDER_SIGN, CONTRADICTED)
-    if of := _most(len(away), trials):
+    if of := _most(len(found_in(checked, RUDDER_SIGN)), trials):
         return (
             f"{first} {of} the ship turns away from her rudder, so the sign of its angle is wrong, or those of heading "
             "and yaw rate."
         )
+    apart = found_in(checked, CONTRADICTED)
     if of := _most(len(apart), trials):
         one = next(iter(apart.values()))
         return f"{first} {of} {one.what}, whatever the model: {one.why}."

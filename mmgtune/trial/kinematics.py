@@ -283,6 +283,10 @@ class Stretch:
         """Whether one axis is longer than the other, as no unit of speed makes it."""
         return self.north > 0.0 and self.east > 0.0 and abs(np.log(self.east / self.north)) > OFF
 
+    def explains(self, asked: float) -> bool:
+        """Whether that is what is wrong with positions which velocities miss by so much, as of ``position_misfits``."""
+        return self.uneven and self.misfit < min(FITS, 0.5 * asked)
+
     @property
     def axes(self) -> dict[str, float]:
         """Of the positions that are to be divided, by how much."""

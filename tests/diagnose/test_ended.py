@@ -75,8 +75,7 @@ def test_it_is_said_before_what_cannot_be_named(monkeypatch):
         jumped={"a": 12.0},
         ended={"u": 2.6},
         causes=(),
-        misread={},
-        leftover=SimpleNamespace(misread={}),
+        wrong_logs={},
     )
     first, why, *_ = saying.said(answer)
     assert first == (

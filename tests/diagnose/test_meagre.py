@@ -17,7 +17,7 @@ from mmgtune.diagnose.folder import write_diagnosis
 from mmgtune.errors import OptionError
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile
-from mmgtune.trial import Trial
+from mmgtune.trial import Trial, check_trials
 from mmgtune.trial.checks.control_checks import RUDDER_SIGN
 from mmgtune.trial.checks.set_checks import found_in
 from mmgtune.units import DEG
@@ -84,8 +84,8 @@ def test_a_channel_of_numbers_whose_squares_are_none():
 def test_a_rudder_of_the_wrong_sign_is_told_first():
     trials = load_trials("suzaku")
     wrong = {name: replace(one, delta=-one.delta) for name, one in trials.trials.items() if name in trials.tune[:3]}
-    assert [list(found) for found in found_in(wrong, RUDDER_SIGN)] == [list(wrong)]
-    assert found_in(trials.trials, RUDDER_SIGN) == [{}]
+    assert list(found_in(check_trials(wrong), RUDDER_SIGN)) == list(wrong)
+    assert not found_in(check_trials(trials.trials), RUDDER_SIGN)
     asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
     result = diagnose("suzaku", replace(trials, trials=wrong, tune=tuple(wrong), test=()), asked)
     assert result.verdict == "unexplained"
@@ -101,7 +101,7 @@ def test_positions_stretched_along_one_axis_are_told_first(by_noise, monkeypatch
     motions = simulate_trials(profile, sailed, integrator=Integrator("rk4"))
     made = {id: logged(trial, motion, rng) for id, trial, motion in zip(ids, sailed, motions, strict=True)}
     if by_noise:  # what is left is thought to be noise, whatever the logs say
-        monkeypatch.setattr(import_module("mmgtune.diagnose.run"), "_contradicted", lambda trials: "Logs differ.")
+        monkeypatch.setattr(import_module("mmgtune.diagnose.run"), "_contradicted", lambda *_: "Logs differ.")
     else:
         made = {id: replace(one, y=1.2 * one.y) for id, one in made.items()}
     asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)

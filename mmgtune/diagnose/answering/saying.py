@@ -61,7 +61,7 @@ def said(answer: Answer) -> Said:
     if answer.verdict == "found" and not answer.causes:
         return Said(" ".join(["No cause that is the same in all voyages shows.", *told]))
     more = [*told, *([answer.together.sentence] if answer.together else [])]
-    misread = misread_in_words(answer.misread or answer.leftover.misread) if answer.causes else ""
+    misread = misread_in_words(answer.wrong_logs) if answer.causes else ""
     of_sensors = "; ".join(filter(None, (jumps_in_words(answer.jumped), ends_in_words(answer.ended), misread)))
     apart = f"{capital(of_sensors)}. Apart from that: " if of_sensors else ""
     if answer.verdict == "unexplained":
@@ -234,7 +234,7 @@ def _of_the_unknown(answer: Answer) -> Said:
         )
     if answer.of_a_sensor:
         changed = (change_in_words(*one) for one in answer.leftover.changed.items())
-        told = "; ".join(filter(None, (*changed, misread_in_words(answer.misread or answer.leftover.misread))))
+        told = "; ".join(filter(None, (*changed, misread_in_words(answer.wrong_logs))))
         without = "Without that log all others are fitted to the noise of the measurements."
         fits = answer.misread and not (answer.causes or answer.leftover.noticed)
         return Said(f"Something is wrong with a sensor, and no known cause shows: {told}.", without if fits else "")

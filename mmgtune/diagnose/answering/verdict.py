@@ -75,9 +75,18 @@ class Answer(Belief, Plotted):
     @property
     def leaves_shape(self) -> bool:
         """Whether what is left shows something that is wrong, here or on the trials kept for testing."""
+        return self._shows or self.misses_test
+
+    @property
+    def wrong_logs(self) -> Misread:
+        """Logs that are off in single runs, left out of what was looked at or not."""
+        return self.misread or self.leftover.misread
+
+    @property
+    def _shows(self) -> bool:
+        """Whether what is left of the trials looked at, or was left out of these, shows something that is wrong."""
         left = self.leftover
-        odd = left.offsets or left.changed or left.misread or self.misread
-        return left.structured or bool(odd) or self.misses_test
+        return left.structured or bool(left.offsets or left.changed or self.wrong_logs)
 
     @property
     def kind(self) -> str:
@@ -99,17 +108,13 @@ class Answer(Belief, Plotted):
     def of_a_sensor(self) -> bool:
         """Whether a log whose factor changes within trials, or that is off in single runs, shows, and no cause worth
         speaking of."""
-        odd = self.leftover.changed or self.leftover.misread or self.misread
-        return bool(odd) and not self.tells_a_part
+        return bool(self.leftover.changed or self.wrong_logs) and not self.tells_a_part
 
     @property
     def misses_test(self) -> bool:
         """Whether the model fits the trials looked at without any cause, and those kept for testing show that something
         is wrong all the same."""
-        left = self.leftover
-        odd = left.structured or left.offsets or left.changed or left.misread
-        fits = not (self.causes or odd or self.choice)
-        return fits and self.gain.missed
+        return not (self.causes or self._shows or self.choice) and self.gain.missed
 
     @property
     def names_causes(self) -> bool:

@@ -310,3 +310,11 @@ def _with_memory(phi: float, covariance: FloatArray) -> ChannelNoise:
 def by_channel(trials: Sequence[Trial], level: Callable[[FloatArray], float]) -> FloatArray:
     """(6,) medians over trials of a level of noise, worked out from each channel of the measured motion."""
     return np.asarray(np.median([[level(values) for values in trial.motion.T] for trial in trials], axis=0))
+
+
+def white_level(residuals: Sequence[FloatArray]) -> FloatArray:
+    """(n_channels,) deviation of white noise in residuals (n_samples, n_channels) of trials, from second differences; 0
+    of what was not measured."""
+    second = np.concatenate([np.diff(r, n=2, axis=0) for r in residuals])
+    counts = np.isfinite(second).sum(axis=0)
+    return np.asarray(np.sqrt(np.nansum(second**2, axis=0) / np.maximum(counts, 1) / 6.0))

@@ -14,12 +14,13 @@ from ...documents import finite
 from ...fitting.box import group_of
 from ...model import Model
 from ...trial import Trial
-from ...trial.checks.set_checks import oddest
+from ...trial.checks.set_checks import check_trials, oddest
 from ...trial.smoothing import FEWEST
 from ..bench.workbench import Point, Workbench
 from ..searching.search import Found
 from . import ResidualForces, can_be_explained, explain_forces, noise_share, residual_forces, short_horizon
-from .leftover import LOGGED, Leftover, residuals_of
+from .leftover import Leftover, residuals_of
+from .logged import LOGGED
 from .whereabouts import Whereabouts, whereabouts
 
 
@@ -58,7 +59,7 @@ def error_of(bench: Workbench, found: Found, before: Leftover, told: Leftover) -
         left = sum(_excess_by_run(bench, refit.point).values())
         removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
     ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
-    odd = oddest({trial.id: trial for trial in bench.trials}, bench.model.L_pp)
+    odd = oddest(check_trials({trial.id: trial for trial in bench.trials}, bench.model.L_pp))
     of_runs = {trial.run: odd[trial.id] for trial in bench.trials if trial.id in odd}
     offsets = {name: of for name, of in told.offsets.items() if name in before.offsets}
     where = whereabouts(_forces(bench, found.base), by_run, ranked, offsets, of_runs)

@@ -24,10 +24,11 @@ from ...trial import Trial
 from ...trial.checks.in_parts import changes_within
 from ...trial.kinematics import rounding_noise
 from ...units import DEG
-from ..bench.noise import by_channel, rows_of_channels
+from ..bench.noise import by_channel, rows_of_channels, white_level
 from ..bench.workbench import Point, Workbench, least_noise
 from ..signatures.linear import linearise
 from . import FEWEST_BLOCKS, share_explained
+from .logged import LOGGED
 from .misread import Misread, misread_in
 
 NOTICED = 0.05
@@ -64,9 +65,6 @@ SWELLS = 3.0
 BLOCK = 20.0
 """Time [s] residuals are averaged over before asking what explains them."""
 
-
-LOGGED = {"psi": "heading", "u": "surge velocity", "v_m": "sway velocity", "r": "yaw rate"}
-"""Channels whose sensor can be off by a number; positions begin where they were measured."""
 
 POSITION = "position"
 """What both channels of the position are called together: one receiver shows them."""
@@ -202,7 +200,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
 def _level(bench: Workbench, residuals: Sequence[FloatArray]) -> FloatArray:
     """(6,) deviation of the white noise of the channels."""
     # Second differences do not show the noise of rounding where a channel moves little.
-    shown = np.maximum(_white(residuals), by_channel(bench.trials, rounding_noise))
+    shown = np.maximum(white_level(residuals), by_channel(bench.trials, rounding_noise))
     return np.where(shown > 0.0, np.maximum(shown, 1e-3 * least_noise(bench.trials)), shown)
 
 
@@ -325,13 +323,6 @@ def in_words(name: str, offset: float) -> str:
     """An offset of the log of a channel as a sentence without its full stop."""
     shown = f"{offset:+.3f} m/s" if name in ("u", "v_m") else f"{offset / DEG:+.3g} deg{'/s' if name == 'r' else ''}"
     return f"The log of the {LOGGED[name]} is off by {shown} in every run alike, most of what is left in that channel"
-
-
-def _white(residuals: Sequence[FloatArray]) -> FloatArray:
-    """(6,) white noise of each channel, from second differences of the residuals; 0 of what was not measured."""
-    second = np.concatenate([np.diff(r, n=2, axis=0) for r in residuals])
-    counts = np.isfinite(second).sum(axis=0)
-    return np.asarray(np.sqrt(np.nansum(second**2, axis=0) / np.maximum(counts, 1) / 6.0))
 
 
 def _left_open(bench: Workbench, point: Point) -> FloatArray:

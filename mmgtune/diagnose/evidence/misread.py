@@ -12,9 +12,11 @@ from ...arrays import FloatArray
 from ...backends import STATES
 from ...phrases import listed
 from ...trial import Trial
+from ..bench.noise import white_level
+from .logged import LOGGED
 
-MISREADABLE = {"u": "surge velocity", "v_m": "sway velocity", "r": "yaw rate"}
-"""Channels whose log says nothing of another channel's, in words."""
+MISREADABLE = ("u", "v_m", "r")
+"""Channels whose log says nothing of another channel's."""
 
 FAR = 4.0
 """Times what is left in a channel of a run must exceed the white noise there, what is left in each other channel of the
@@ -108,10 +110,7 @@ def slow(values: FloatArray, level: FloatArray) -> FloatArray:
     what was not measured."""
     known = np.isfinite(values[1:])
     squares = np.where(known, values[1:], 0.0) ** 2
-    bends = np.diff(values, n=2, axis=0)
-    bent = np.where(np.isfinite(bends), bends, 0.0) ** 2
-    counted, compared = np.maximum(known.sum(axis=0), 1), np.maximum(np.isfinite(bends).sum(axis=0), 1)
-    beyond = squares.sum(axis=0) / counted - bent.sum(axis=0) / compared / 6.0
+    beyond = squares.sum(axis=0) / np.maximum(known.sum(axis=0), 1) - white_level([values]) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.sqrt(np.maximum(beyond, 0.0)) / level
     return np.where(np.isfinite(found), found, 0.0)
@@ -132,7 +131,7 @@ def _by_factor(measured: FloatArray, off: FloatArray) -> tuple[float | None, Flo
 
 def in_words(misread: Misread) -> str:
     """What logs show in single runs as a sentence without its full stop; "" where none is off."""
-    return "; ".join(_of_channel(MISREADABLE[name], runs) for name, runs in misread.items())
+    return "; ".join(_of_channel(LOGGED[name], runs) for name, runs in misread.items())
 
 
 def _of_channel(log: str, runs: Mapping[str, float | None]) -> str:

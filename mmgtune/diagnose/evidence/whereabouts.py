@@ -21,7 +21,8 @@ from ...trial import Trial, measured_wind
 from ...trial.checks.set_checks import odd_in_words
 from ...units import DEG
 from . import FEWEST_BLOCKS, ResidualForces, share_explained
-from .leftover import LOGGED, POSITION, in_words
+from .leftover import POSITION, in_words
+from .logged import LOGGED
 
 AXES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
 PHASES = {

@@ -264,7 +264,7 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
         place = f"if they are of a point about {aboard(lever.x, lever.y, 2)} of midship"
         fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
     stretch = stretch_of(trial.columns)
-    if stretch is not None and stretch.uneven and stretch.misfit < enough:
+    if stretch is not None and stretch.explains(asked):
         divided = " and ".join(f"'{name}' is divided by {by:.3g}" for name, by in stretch.axes.items())
         fitting.append((FREER * stretch.misfit, f"if {divided}", IN_METRES))
     fitting.sort()

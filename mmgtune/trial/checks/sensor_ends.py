@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...physics.frame import to_ship
-from ..kinematics import FITS, Reading, halfway, middle, position_misfits, stretch_of
+from ..kinematics import Reading, halfway, middle, position_misfits, stretch_of
 from ..model import Trial
 from ..schema import ATTRIBUTES
 
@@ -106,7 +106,7 @@ def _at_first(trial: Trial) -> float:
 def _stretched(trial: Trial) -> bool:
     """Whether positions that are too long along one axis are why the ship seems to go faster than her log shows."""
     found, asked = stretch_of(trial.columns), position_misfits(trial.columns, among=(Reading.AS_ASKED,))
-    return found is not None and found.uneven and found.misfit < min(FITS, 0.5 * asked[Reading.AS_ASKED])
+    return found is not None and found.explains(asked[Reading.AS_ASKED])
 
 
 def _stretch(trial: Trial) -> int:

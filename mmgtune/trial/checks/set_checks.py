@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -36,25 +36,30 @@ def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict
     return found
 
 
-def oddest(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict[str, str]:
+def oddest(checked: Mapping[str, Sequence[Finding]]) -> dict[str, str]:
     """By trial, what is oddest of all that ``check_trials`` calls wrong or warns of; nothing of those where nothing is.
 
     Gaps are not: what falls into them counts in no comparison, and results say that themselves.
     """
     return {
         name: odd[0].what
-        for name, findings in check_trials(trials, L_pp).items()
+        for name, findings in checked.items()
         if (odd := [one for one in findings if one.severity != "note" and one.code != "gaps"])
     }
 
 
 def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str]:
     """A sentence for results, where trials they are made of have something odd; see ``oddest``."""
-    worst = oddest(trials, L_pp)
+    return told_of(check_trials(trials, L_pp))
+
+
+def told_of(checked: Mapping[str, Sequence[Finding]]) -> list[str]:
+    """The same of what ``check_trials`` found."""
+    worst = oddest(checked)
     if not worst:
         return []
     said = odd_in_words(worst)
-    return [f"Something is odd in {len(worst)} of {len(trials)} trials: {said}. 'mmgtune trials check' says more."]
+    return [f"Something is odd in {len(worst)} of {len(checked)} trials: {said}. 'mmgtune trials check' says more."]
 
 
 def another_ship(trials: str, ship: str) -> list[str]:
@@ -79,10 +84,9 @@ def odd_in_words(odd: Mapping[str, str]) -> str:
     return "; ".join([*told[:NAMED], *more])
 
 
-def found_in(trials: Mapping[str, Trial], *codes: str) -> list[dict[str, Finding]]:
-    """For each code the finding that has it, by trial where there is one."""
-    checked = {name: check_trial(trial) for name, trial in trials.items()}
-    return [{name: one for name, found in checked.items() for one in found if one.code == code} for code in codes]
+def found_in(checked: Mapping[str, Sequence[Finding]], code: str) -> dict[str, Finding]:
+    """The finding with a code among what ``check_trials`` found, by trial that has one."""
+    return {name: one for name, findings in checked.items() for one in findings if one.code == code}
 
 
 def _of_a_gear(
