@@ -75,6 +75,17 @@ def test_how_slowly_noise_fades_is_told_though_a_fit_took_most_of_it(phi, least,
         assert np.mean([one.fading for one in seen]) == pytest.approx(0.4, abs=0.2)
 
 
+@pytest.mark.parametrize(
+    "noise", [ChannelNoise(0.9, 2.0, 0.5), ChannelNoise(0.967, 40.0, 0.0), ChannelNoise(white=4.0)]
+)
+def test_noise_is_freed_of_its_memory_and_gets_it_back(noise):
+    others = dict.fromkeys(("y", "psi", "u", "v_m", "r"), TRUE)
+    model = NoiseModel(Cases(), {"x": noise, **others})
+    white = np.random.default_rng(5).standard_normal((Cases.rows.size, 40))
+    np.testing.assert_allclose(model.apply(model.restore(white)), white, atol=1e-9)
+    np.testing.assert_allclose(model.restore(model.apply(white)), white, atol=1e-9)
+
+
 def test_white_noise_stays_as_it_is():
     white = np.random.default_rng(1).standard_normal(Cases.rows.size)
     fitted = fit_of_slow_changes(3)
