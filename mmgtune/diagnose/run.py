@@ -45,7 +45,8 @@ from .bench.workbench import Workbench, make_workbench
 from .causes.belief import TOLD
 from .causes.contributions import removed_by, set_aside
 from .evidence.leftover import NOTICED, SWELLS, beside_swell, leftover, motions_of
-from .evidence.misread import LeftOut, is_of_few, without
+from .evidence.misread import RUDDER, LeftOut, both, is_of_few, without
+from .evidence.turned_rudder import turned_in, with_rudders_turned
 from .held_out.together import Together
 from .held_out.unseen import Unseen
 from .result import Diagnosis
@@ -55,6 +56,9 @@ from .searching.search import Found, against_its_kin, doubtful_beginning, price_
 from .voyages.difference import LEG_NAMES, Difference
 from .voyages.differences import differences
 from .voyages.windows import Choice, looked_at, with_hull_held
+
+Checked = Mapping[str, Sequence[Finding]]
+"""What ``check_trials`` found, by trial."""
 
 
 @blas_on_one_thread
@@ -94,20 +98,28 @@ def diagnose(
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):
         began = time.perf_counter()
-        result = _looked_at(profile, trials, choice, options, hooks, provenance)
+        checked = check_trials(trials.trials, profile.L_pp) if choice is None else {}
+        turned = turned_in(profile, trials.trials, found_in(checked, RUDDER_SIGN))
+        if turned:
+            right = {id: with_rudders_turned(trial) for id, trial in trials.trials.items() if id in turned}
+            trials = replace(trials, trials={**trials.trials, **right})
+        result = _looked_at(profile, trials, checked, choice, options, hooks, provenance)
         if result.gain.missed and not (options.keep_test or choice or result.is_beyond_all or hooks.stop()):
             hooks.on_phase("looking at all trials together")
             with suppress(ProfileError):  # where the model runs away on the others there is nothing more to look at
-                of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)
+                of_all = _looked_at(profile, replace(trials, test=()), checked, None, options, hooks, provenance)
                 result = _settled(result, of_all)
         elif choice is None and result.verdict in ("unexplained", "not-separable") and not hooks.stop():
-            result = _in_windows(profile, trials, options, hooks, provenance, result)
+            result = _in_windows(profile, trials, checked, options, hooks, provenance, result)
+        if turned:
+            result = replace(result, misread=both({RUDDER: dict.fromkeys(turned, -1.0)}, result.misread))
         return replace(result, wall_s=time.perf_counter() - began)
 
 
 def _in_windows(
     profile: ShipProfile,
     trials: TrialSet,
+    checked: Checked,
     options: DiagnoseOptions,
     hooks: Hooks,
     provenance: dict[str, Any],
@@ -119,7 +131,7 @@ def _in_windows(
         return whole
     hooks.on_phase(f"looking at windows of {WINDOW:g} s")
     with suppress(ProfileError):
-        windows = _looked_at(profile, trials, None, replace(options, restart=WINDOW), hooks, provenance)
+        windows = _looked_at(profile, trials, checked, None, replace(options, restart=WINDOW), hooks, provenance)
         if windows.names_causes and (not whole.names_causes or _rivals(windows) < _rivals(whole)):
             said = (
                 f"Told by windows of {WINDOW:g} s, each with a beginning of its own: over whole runs, what the inputs "
@@ -155,6 +167,7 @@ def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:
 def _looked_at(
     profile: ShipProfile,
     trials: TrialSet,
+    checked: Checked,
     choice: Choice | None,
     options: DiagnoseOptions,
     hooks: Hooks,
@@ -163,10 +176,10 @@ def _looked_at(
 ) -> Diagnosis:
     """The answer of the trials that are not kept for testing; how long it took is for the caller to say.
 
-    gone  logs that were found to be misread, in whose place the trials have gaps
+    checked  what is odd about the trials as given
+    gone     logs that were found to be misread, in whose place the trials have gaps
     """
     odd = [f"{capital(words)}." for words in another_ship(trials.ship, profile.id)]
-    checked = check_trials(trials.trials, profile.L_pp) if choice is None else {}
     odd += told_of(checked)
     odd += _derived(trials.trials)
     given, whole = trials, trials.trials
@@ -227,7 +240,8 @@ def _looked_at(
         hooks.on_phase("looking again without logs that are misread")
         right = replace(given, trials={id: without(trial, misread) for id, trial in whole.items()})
         wrong = {id: trial for id, trial in whole.items() if any(id in runs for runs in misread.values())}
-        return _looked_at(profile, right, choice, options, hooks, provenance, LeftOut(misread, wrong).beside(gone))
+        without_them = LeftOut(misread, wrong).beside(gone)
+        return _looked_at(profile, right, checked, choice, options, hooks, provenance, without_them)
     if gone:
         shown = {trial.id: states for trial, states in zip(bench.trials, motions_of(bench, found.final), strict=True)}
         result = replace(result, misread=gone.as_all_else_shows(shown))
@@ -297,7 +311,7 @@ def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
     return [name for name in LEG_NAMES if name in there and name not in names]
 
 
-def _contradicted(trials: Mapping[str, Trial], checked: Mapping[str, Sequence[Finding]]) -> str:
+def _contradicted(trials: Mapping[str, Trial], checked: Checked) -> str:
     """What the logs of most trials say against each other, which is to be put right before a cause is looked for; by
     what ``check_trials`` found in them."""
     first = "First put the logs right: in"

@@ -7,11 +7,15 @@ import pytest
 
 from mmgtune import DiagnoseOptions, diagnose, load_trials
 from mmgtune.backends import STATES, Integrator
-from mmgtune.diagnose.evidence.misread import LeftOut, in_words, is_of_few, misread_in, slow, without
+from mmgtune.diagnose.evidence.misread import LeftOut, both, in_words, is_of_few, misread_in, slow, without
+from mmgtune.diagnose.evidence.turned_rudder import turned_in, with_rudders_turned
 from mmgtune.diagnose.folder import write_diagnosis
 from mmgtune.effects import find_effect
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile
+from mmgtune.trial import check_trials
+from mmgtune.trial.checks.control_checks import RUDDER_SIGN
+from mmgtune.trial.checks.set_checks import found_in
 from mmgtune.units import DEG
 from tests.diagnose.sensors import NOISE, logged
 
@@ -173,3 +177,66 @@ def test_the_answer_names_the_log_and_the_run(offset, tmp_path):
         assert result.sentence() == f"Something is wrong with a sensor, and no known cause shows: {shown}. {fits}"
     document = write_diagnosis(result, tmp_path / "run")
     assert document["verdict"] == result.verdict
+
+
+def sailed_with(turned, offset=0.0):
+    """Runs of the ship, some of whose rudder angles have the other sign."""
+    profile, rng = load_profile("suzaku"), np.random.default_rng(4)
+    run = [replace(one, delta=one.delta + offset) for one in TRIALS]
+    sailed = simulate_trials(profile, run, integrator=Integrator("rk4"))
+    made = [logged(trial, motion, rng) for trial, motion in zip(TRIALS, sailed, strict=True)]
+    return profile, {one.id: with_rudders_turned(one) if k in turned else one for k, one in enumerate(made)}
+
+
+@pytest.mark.parametrize(("turned", "told"), [([], []), ([1], [1]), ([1, 3], [1, 3]), ([0, 1, 3], [])])
+def test_rudders_of_another_sign_are_those_that_tell_the_run_turned_round(turned, told):
+    profile, trials = sailed_with(turned)
+    ids = list(trials)
+    doubtful = [ids[k] for k in turned]
+    assert list(found_in(check_trials(trials, profile.L_pp), RUDDER_SIGN)) == doubtful
+    assert turned_in(profile, trials, doubtful) == [ids[k] for k in told]
+
+
+def test_a_ship_that_something_else_turns_away_has_no_other_sign():
+    """The yaw moment of a bank outweighs that of the rudder: turned round it tells more, not all of it."""
+    profile, trials = sailed_with([1])
+    of_bank = trials[TRIALS[1].id]
+    off = 0.2 * (of_bank.r.max() - of_bank.r.min())
+    shown = {**trials, of_bank.id: replace(of_bank, r=of_bank.r + off, v_m=of_bank.v_m - 20.0 * off)}
+    assert turned_in(profile, shown, [of_bank.id]) == []
+    right = with_rudders_turned(of_bank)
+    assert turned_in(profile, {**trials, right.id: replace(right, r=-right.r)}, [right.id]) == []  # of the yaw rate
+
+
+def test_all_rudders_are_turned_and_nothing_else():
+    trial = replace(TRIALS[0], extra={"delta_port": TRIALS[0].delta + 1.0, "wind_speed": TRIALS[0].n})
+    turned = with_rudders_turned(trial)
+    for name, values in trial.columns.items():
+        sign = -1.0 if name.startswith("delta") else 1.0
+        assert np.array_equal(turned.columns[name], sign * values, equal_nan=True)
+
+
+@pytest.mark.parametrize("offset", [0.0, 2.0 * DEG])
+def test_the_answer_says_that_a_rudder_was_put_right(offset, tmp_path):
+    profile, trials = sailed_with([2], offset)
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
+    result = diagnose(profile, [*trials.values()], asked)
+    turned = TRIALS[2].id
+    assert result.to_dict()["unexplained"]["misread"] == {"delta": {turned: -1.0}}
+    shown = f"rudder angle is logged with the other sign in {turned}, and taken with that of all other runs"
+    if offset:
+        assert [cause.effect for cause in result.causes] == [find_effect("rudder-offset")]
+        assert result.sentence().startswith(f"The {shown}. Apart from that: The rudder")
+    else:
+        assert result.verdict == "unexplained"
+        fits = "With that put right all logs are fitted to the noise of the measurements."
+        assert result.sentence() == f"Something is wrong with a sensor, and no known cause shows: the {shown}. {fits}"
+    assert write_diagnosis(result, tmp_path / "run")["unexplained"]["misread"] == {"delta": {turned: -1.0}}
+
+
+def test_rudders_are_told_before_logs_of_the_motion():
+    of_both = both({"r": {"a": 2.0}}, {"delta": {"b": -1.0}, "r": {"c": None}})
+    assert [*of_both] == ["delta", "r"]
+    assert of_both["r"] == {"a": 2.0, "c": None}
+    told = "the rudder angle is logged with the other sign in 4 runs, and taken with that of all other runs"
+    assert in_words({"delta": dict.fromkeys("abcd", -1.0)}) == told

@@ -10,6 +10,7 @@ from ...units import DEG
 from ..bench.of_hull import AS_WELL
 from ..causes.belief import TOLD
 from ..evidence.leftover import change_in_words, in_words
+from ..evidence.misread import RUDDER
 from ..evidence.misread import in_words as misread_in_words
 from ..held_out.gain import MOST
 from ..signatures.retuned import besides, far_off, weighed
@@ -235,7 +236,10 @@ def _of_the_unknown(answer: Answer) -> Said:
     if answer.of_a_sensor:
         changed = (change_in_words(*one) for one in answer.leftover.changed.items())
         told = "; ".join(filter(None, (*changed, misread_in_words(answer.wrong_logs))))
-        without = "Without that log all others are fitted to the noise of the measurements."
+        gone = (
+            "With that put right all logs are" if [*answer.misread] == [RUDDER] else "Without that log all others are"
+        )
+        without = f"{gone} fitted to the noise of the measurements."
         fits = answer.misread and not (answer.causes or answer.leftover.noticed)
         return Said(f"Something is wrong with a sensor, and no known cause shows: {told}.", without if fits else "")
     excess = answer.leftover.unknown

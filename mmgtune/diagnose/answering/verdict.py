@@ -13,7 +13,7 @@ from ...trial import Coverage
 from ..causes.belief import MOSTLY, Belief
 from ..causes.cause import Candidate, Cause, Detectability, Trace
 from ..causes.doubted import Doubted, Leading
-from ..evidence.misread import Misread
+from ..evidence.misread import Misread, both
 from ..evidence.whereabouts import Whereabouts
 from ..record import Record, kind_of, record_of
 from ..searching.instead import Instead
@@ -79,8 +79,8 @@ class Answer(Belief, Plotted):
 
     @property
     def wrong_logs(self) -> Misread:
-        """Logs that are off in single runs, left out of what was looked at or not."""
-        return self.misread or self.leftover.misread
+        """Logs that are off in single runs, put right or left out of what was looked at, or not."""
+        return both(self.misread, self.leftover.misread)
 
     @property
     def _shows(self) -> bool:

@@ -31,6 +31,9 @@ STANDS = 0.1
 NAMED = 3
 """Runs up to which each is named."""
 
+RUDDER = "delta"
+"""What stands for the rudders of a run where their log is off."""
+
 OF_ALL_ELSE = "times the motion that all else shows"
 
 Misread = Mapping[str, Mapping[str, float | None]]
@@ -78,6 +81,12 @@ def without(trial: Trial, misread: Misread) -> Trial:
     return replace(trial, **kept) if kept else trial
 
 
+def both(one: Misread, other: Misread) -> Misread:
+    """What one of two says is misread, and the other besides."""
+    names = [name for name in (RUDDER, *MISREADABLE) if name in one or name in other]
+    return {name: {**one.get(name, {}), **other.get(name, {})} for name in names}
+
+
 @dataclass(frozen=True, eq=False)
 class LeftOut:
     """Logs that are misread, and the trials as logged by their ids."""
@@ -89,9 +98,7 @@ class LeftOut:
         """These and others, which were left out before."""
         if others is None:
             return self
-        names = [name for name in MISREADABLE if name in self.misread or name in others.misread]
-        both = {name: {**self.misread.get(name, {}), **others.misread.get(name, {})} for name in names}
-        return LeftOut(both, {**self.trials, **others.trials})
+        return LeftOut(both(self.misread, others.misread), {**self.trials, **others.trials})
 
     def as_all_else_shows(self, motions: Mapping[str, FloatArray]) -> Misread:
         """The logs with factors by the motion (n_samples, 6) of runs that a model shows which was fitted to all else;
@@ -131,7 +138,15 @@ def _by_factor(measured: FloatArray, off: FloatArray) -> tuple[float | None, Flo
 
 def in_words(misread: Misread) -> str:
     """What logs show in single runs as a sentence without its full stop; "" where none is off."""
-    return "; ".join(_of_channel(LOGGED[name], runs) for name, runs in misread.items())
+    return "; ".join(
+        _of_rudders(list(runs)) if name == RUDDER else _of_channel(LOGGED[name], runs) for name, runs in misread.items()
+    )
+
+
+def _of_rudders(runs: Sequence[str]) -> str:
+    """That a sign is turned, and was put right."""
+    told = listed(runs) if len(runs) <= NAMED else f"{len(runs)} runs"
+    return f"the rudder angle is logged with the other sign in {told}, and taken with that of all other runs"
 
 
 def _of_channel(log: str, runs: Mapping[str, float | None]) -> str:
