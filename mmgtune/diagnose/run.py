@@ -203,9 +203,14 @@ def _looked_at(
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
     asked = [*known, *in_place]
 
-    def answered(hypotheses: Sequence[Hypothesis], left_out: Sequence[Refit]) -> tuple[Diagnosis, Found]:
-        """The answer of a search among some of the hypotheses; an effect left out may do as well as what is found."""
-        found = search(bench, hypotheses, in_place, hooks.on_phase)
+    def answered(
+        hypotheses: Sequence[Hypothesis], left_out: Sequence[Refit], earlier: Found | None = None
+    ) -> tuple[Diagnosis, Found]:
+        """The answer of a search among some of the hypotheses; an effect left out may do as well as what is found.
+
+        earlier  what was found among all: its first look is taken up again
+        """
+        found = search(bench, hypotheses, in_place, hooks.on_phase, earlier.steps[0] if earlier else None)
         found.left_out = list(left_out)
         hooks.on_phase("measuring the gain")
         before = leftover(bench, found.base)
@@ -264,7 +269,7 @@ def _looked_at(
 
 def _of_the_better_beginning(
     bench: Workbench,
-    answered: Callable[[Sequence[Hypothesis], Sequence[Refit]], tuple[Diagnosis, Found]],
+    answered: Callable[..., tuple[Diagnosis, Found]],
     hypotheses: Sequence[Hypothesis],
     hooks: Hooks,
 ) -> tuple[Diagnosis, Found]:
@@ -274,11 +279,11 @@ def _of_the_better_beginning(
     result, found = answered(hypotheses, ())
     if not hooks.stop() and (tag := of_one_form(result) or misleading(result)):
         hooks.on_phase(f"looking again without {tag} of each run")
-        spreads, bench.spreads = bench.spreads, {}
-        other, others = answered([one for one in hypotheses if not one.by], ())
+        known = bench.known()
+        other, others = answered([one for one in hypotheses if not one.by], (), found)
         if tells_as_well(other, result):
             return other, others
-        bench.spreads = spreads
+        bench.put_back(known)
         result = replace(result, interrupted=other.interrupted)
     doubted = result.verdict == "unexplained" or (result.names_causes and against_its_kin(found))
     begun = doubtful_beginning(bench, found) if doubted and not hooks.stop() else []
@@ -286,11 +291,11 @@ def _of_the_better_beginning(
         return result, found
     first = begun[0].hypothesis.tag
     hooks.on_phase(f"looking again without {first}")
-    spreads, bench.spreads = bench.spreads, {}
-    other, others = answered([one for one in hypotheses if one.tag != first], begun)
+    known = bench.known()
+    other, others = answered([one for one in hypotheses if one.tag != first], begun, found)
     if other.names_causes and _fits_better(bench, others, found):
         return other, others
-    bench.spreads = spreads
+    bench.put_back(known)
     return replace(result, interrupted=other.interrupted), found
 
 

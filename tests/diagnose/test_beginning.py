@@ -61,6 +61,18 @@ class Answer:
 UNEXPLAINED = Answer("unexplained")
 
 
+class Knowing:
+    """A workbench that knows one thing."""
+
+    knows = 0
+
+    def known(self):
+        return self.knows
+
+    def put_back(self, known):
+        self.knows = known
+
+
 @pytest.mark.parametrize(("second", "doubtful"), [("wave-drift", ["wind"]), ("current", [])])
 def test_a_first_cause_beside_one_that_acts_like_it_is_doubtful(second, doubtful):
     """Waves of 49 kN and a wind against them stood for a wind alone, which the first look could not try."""
@@ -110,12 +122,14 @@ def test_the_answer_of_the_second_search_is_told_where_it_is_believed_and_fits_b
     monkeypatch.setattr(run, "against_its_kin", lambda found: first.kin)
     asked = []
 
-    def answered(hypotheses, left_out):
+    def answered(hypotheses, left_out, earlier=None):
         asked.append([one.tag for one in hypotheses])
-        return (first, other)[len(asked) - 1], None
+        bench.knows = len(asked)
+        assert earlier == (None if len(asked) == 1 else "found first")
+        return (first, other)[len(asked) - 1], "found first"
 
     hypotheses = [SimpleNamespace(tag=tag) for tag in ("wind", "current", "wind")]
-    bench = SimpleNamespace(spreads={"of": "the first"})
+    bench = Knowing()
     assert run._of_the_better_beginning(bench, answered, hypotheses, Hooks())[0] == told
     assert asked[1:] == ([["current"]] if other else [])
-    assert bench.spreads == ({} if told == other else {"of": "the first"})
+    assert bench.knows == (2 if told == other else 1)  # noise and spreads of what is answered

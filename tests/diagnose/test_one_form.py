@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from mmgtune.diagnose.answering.one_form import misleading, of_one_form, tells_as_well
+from tests.diagnose.test_beginning import Knowing
 
 run = importlib.import_module("mmgtune.diagnose.run")  # the package has a function of a like name
 
@@ -76,14 +77,15 @@ def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken
     first, second = answer(candidates=[form(0.2)]), answer(after, runs=False)
     asked = []
 
-    def answered(hypotheses, left_out):
+    def answered(hypotheses, left_out, earlier=None):
         asked.append([one.by for one in hypotheses])
-        bench.spreads = {"found": len(asked)}
+        bench.knows = len(asked)
+        assert earlier == (None if len(asked) == 1 else "first")
         return (first, "first") if len(asked) == 1 else (second, "second")
 
     for one in (first, second):
         one.verdict, one.interrupted = "found", False
-    bench = SimpleNamespace(spreads={})
+    bench = Knowing()
     known = [SimpleNamespace(by=by, tag="rudder-gain") for by in ("", "trial", "group")]
     said = []
     hooks = SimpleNamespace(stop=lambda: False, on_phase=said.append)
@@ -92,5 +94,5 @@ def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken
     found = run._of_the_better_beginning(bench, answered, known, hooks)
     assert found == ((second, "second") if taken else (first, "first"))
     assert asked == [["", "trial", "group"], [""]]
-    assert bench.spreads == {"found": 2 if taken else 1}  # those of what is answered
+    assert bench.knows == (2 if taken else 1)  # noise and spreads of what is answered
     assert said == ["looking again without rudder-gain of each run"]

@@ -13,9 +13,9 @@ from mmgtune.diagnose.bench import workbench
 from mmgtune.diagnose.bench.hypotheses import known_causes
 from mmgtune.diagnose.bench.workbench import make_workbench
 from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.look import _as_given as as_given
 from mmgtune.diagnose.searching.refitter import HARDLY_MORE, HOPELESS, Known, Refitter
 from mmgtune.diagnose.searching.refitting import Refitting
-from mmgtune.diagnose.searching.search import _as_given as as_given
 from mmgtune.diagnose.searching.shortlist import REFITTED, Shortlist
 from mmgtune.diagnose.signatures.linear import linearise
 from mmgtune.diagnose.signatures.screening import Score, scores

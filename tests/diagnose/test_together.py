@@ -122,7 +122,7 @@ def test_windows_are_looked_at_where_whole_runs_leave_much_open(whole, windows, 
         def groups(self):
             return (("wind", "current"),) if self.verdict == "not-separable" else ()
 
-    def look(profile, trials, choice, options, *rest):
+    def look(profile, trials, checked, choice, options, *rest):
         verdict, of = (whole, "whole") if options.restart is None else (windows, "windows")
         return Seen(verdict, of, SimpleNamespace(left_open=left_open), SimpleNamespace(missed=False))
 

@@ -10,10 +10,10 @@ import pytest
 
 from mmgtune.diagnose.answering.judging import _of_kin
 from mmgtune.diagnose.bench.hypotheses import Hypothesis
-from mmgtune.diagnose.searching import search
+from mmgtune.diagnose.searching import look, search
+from mmgtune.diagnose.searching.look import Step
 from mmgtune.diagnose.searching.refit import Refit, believable_first, decide, kin_among, rivals_among
 from mmgtune.diagnose.searching.refitting import Refitting
-from mmgtune.diagnose.searching.search import Step
 from mmgtune.effects import find_effect
 
 N_RESIDUALS, BEFORE = 10_000, 15_000.0
@@ -149,7 +149,7 @@ def test_one_rate_of_the_rudder_stands_for_two_that_are_alike(monkeypatch, chi2,
     found = SimpleNamespace(causes=[two], final=final, steps=[step])
     there, fewer, started = SimpleNamespace(chi2=chi2), SimpleNamespace(), []
     monkeypatch.setattr(search, "without", lambda *_: fewer)
-    monkeypatch.setattr(search, "_with", lambda *_: there)
+    monkeypatch.setattr(search, "fitted_beside", lambda *_: there)
     monkeypatch.setattr(search, "_exchanged", lambda *asked: started.append(asked[1:]) or there)
     answer = search._in_plainer_form(SimpleNamespace(price=9.0), found, two, [two, other, one])
     assert answer == ((one, there) if plainer else None)
@@ -171,7 +171,7 @@ def test_what_was_near_to_another_form_of_a_cause_is_its_rival(monkeypatch, gain
     monkeypatch.setattr(search, "without", lambda *_: base)
     monkeypatch.setattr(search, "hopeless_beside", lambda *_: math.inf)
     monkeypatch.setattr(search, "_where", lambda point, _: point)
-    monkeypatch.setattr(search, "_with", lambda *_: SimpleNamespace(chi2=base.chi2 - gain))
+    monkeypatch.setattr(search, "fitted_beside", lambda *_: SimpleNamespace(chi2=base.chi2 - gain))
     assert [one.hypothesis.tag for one in search.rivals_of(None, found, draught)] == rivals
     # What a second search leaves out did as well at the first look, and may in the place of what it finds.
     found.steps, found.left_out = steps[1:], [fitted("thrust", 5_640.0, 1.0, 0.0)]
@@ -200,4 +200,4 @@ def test_what_chance_may_bring_is_no_doubt_where_a_plainer_form_of_it_is_told(fo
 
     best, *others = [of(*form) for form in forms]
     two_rates = of("steering-lag", 3300.0, 290.0, 0.1)
-    assert search._in_a_form_told([best, two_rates, *others], two_rates, 0.01) == told
+    assert look._in_a_form_told([best, two_rates, *others], two_rates, 0.01) == told

@@ -16,7 +16,7 @@ from mmgtune.diagnose.bench.workbench import TOLERANCE, make_workbench
 from mmgtune.diagnose.causes.cause import Cause
 from mmgtune.diagnose.evidence.leftover import leftover
 from mmgtune.diagnose.searching.base_fit import base_fit
-from mmgtune.diagnose.searching.search import look
+from mmgtune.diagnose.searching.look import look
 from mmgtune.diagnose.signatures.intervals import Estimate
 from mmgtune.diagnose.signatures.linear import linearise
 from mmgtune.effects import find_effect

@@ -10,8 +10,8 @@ import numpy as np
 from ...fitting.box import parameter_of
 from ..bench.workbench import Workbench
 from ..causes.cause import Detectability
+from ..searching.look import Step
 from ..searching.refit import ENOUGH, WORTH
-from ..searching.search import Step
 from ..signatures.linear import Linear, typical
 from ..signatures.screening import NEVER, angles
 

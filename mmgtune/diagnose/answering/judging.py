@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -84,6 +84,7 @@ class Judge:
     of_traces: float
     choice: Choice | None
     differing: Sequence[Difference]
+    _J_test: dict[int, float | None] = field(default_factory=dict)  # of refits of the first look, which outlive this
 
     def answer(self, found: Found, brought: Sequence[Contribution]) -> tuple[Diagnosis, Found]:
         """The answer, and the causes it is about: those found, or a smaller set where only that is believed.
@@ -183,7 +184,7 @@ class Judge:
             traces=tuple(_trace(bench, one) for one in self.traces),
             contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
             groups=(),
-            candidates=tuple(_candidates(bench, found, self.unseen.test)),
+            candidates=tuple(self._candidates(found)),
             detectability=tuple(detectability(bench, found.steps[0])) if found.steps else (),
             suggestion=None,
             gain=held_out(found, self.unseen),
@@ -210,6 +211,35 @@ class Judge:
             wall_s=0.0,
             interrupted=self.hooks.stop(),
         )
+
+    def _candidates(self, found: Found) -> list[Candidate]:
+        """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
+        if not found.steps:
+            return []
+        first = found.steps[0]
+        promising = {id(r): r.point for r in first.refits if r.gain >= PROMISING * first.refits[0].gain}
+        asked = {of: point for of, point in promising.items() if of not in self._J_test}
+        tested = side_by_side([partial(J_of, self.bench, point, self.unseen.test) for point in asked.values()])
+        self._J_test.update(zip(asked, tested, strict=True))
+        listed = [
+            Candidate(
+                r.hypothesis.tag,
+                tuple(r.hypothesis.variant),
+                r.score.score,
+                r.gain,
+                r.p_value,
+                self._J_test[id(r)] if id(r) in promising else None,
+                r.unvisited if id(r) in promising else "",
+                by=r.hypothesis.by,
+            )
+            for r in first.refits
+        ]
+        refitted = [r.hypothesis for r in first.refits]
+        others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
+        return listed + [
+            Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, None, None, None, by=s.hypothesis.by)
+            for s in others
+        ]
 
     def _compared(self, result: Diagnosis, found: Found) -> Diagnosis:
         """The answer with the rivals that these trials cannot tell from its causes, where these are believed."""
@@ -331,34 +361,6 @@ def _trace(bench: Workbench, aside: Aside) -> Trace:
     runs = ByRun.of(one.effect, one.variant, one.by, one.groups, bench.trials, aside.estimates) if one.by else None
     cause = Cause(one.tag, one.effect, {} if one.by else aside.estimates, aside.p_value, None, runs)
     return Trace(cause, aside.contribution, tuple(aside.alike))
-
-
-def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
-    """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
-    if not found.steps:
-        return []
-    first = found.steps[0]
-    promising = [r for r in first.refits if r.gain >= PROMISING * first.refits[0].gain]
-    tested = side_by_side([partial(J_of, bench, r.point, test) for r in promising])
-    J_test = {id(r): J for r, J in zip(promising, tested, strict=True)}
-    listed = [
-        Candidate(
-            r.hypothesis.tag,
-            tuple(r.hypothesis.variant),
-            r.score.score,
-            r.gain,
-            r.p_value,
-            J_test.get(id(r)),
-            r.unvisited if id(r) in J_test else "",
-            by=r.hypothesis.by,
-        )
-        for r in first.refits
-    ]
-    refitted = [r.hypothesis for r in first.refits]
-    others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
-    return listed + [
-        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, None, None, None, by=s.hypothesis.by) for s in others
-    ]
 
 
 def _of_kin(result: Diagnosis, found: Found) -> list[Refit]:

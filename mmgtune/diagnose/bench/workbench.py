@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypedDict, Unpack
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -269,6 +269,15 @@ class Workbench:
         prior = np.repeat(1.0 / (self.sigma * deviation)[None] ** 2, len(self.trials), axis=0)
         sigma = np.repeat((self.sigma * np.maximum(deviation, LOOSE))[None], len(self.trials), axis=0)
         self.problem = self.problem.with_prior(sigma, prior)
+
+    def known(self) -> dict[str, Any]:
+        """What a search finds out about trials and sensors on its way, for ``put_back``."""
+        return {name: getattr(self, name) for name in ("trials", "problem", "noise", "spreads", "updates", "slopes")}
+
+    def put_back(self, known: Mapping[str, Any]) -> None:
+        """Know what was known before, and nothing of what was found out since."""
+        for name, value in known.items():
+            setattr(self, name, value)
 
     def integrate(self, integrator: Integrator) -> None:
         """Simulate by another method in all that follows."""

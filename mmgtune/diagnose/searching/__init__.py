@@ -1,6 +1,6 @@
 """The search for causes: which hypotheses are refitted, how, and which is taken.
 
-search            screen, refit, decide, add, and look again; base_fit: where it begins
+search            look, add, and look again; base_fit: where it begins; look: screen, refit, decide
 shortlist         which hypotheses are refitted in a look
 refitter          one of them: from where, and how far; refitting: all of a look, the likeliest first
 refit             whether one is believed, and what rivals it

@@ -65,6 +65,14 @@ class Known:
     begun: dict[tuple[str, ...], list[Point]] = field(default_factory=dict)
     least: float = math.inf
 
+    def among(self, hypotheses: Sequence[Hypothesis]) -> Known:
+        """Those of some of the hypotheses."""
+        names = {one.names for one in hypotheses}
+        alike = {one.names for one in hypotheses if not one.by}
+        ends = {of: end for of, end in self.ends.items() if of in names}
+        least = min((end.chi2 for of, end in ends.items() if of in alike), default=math.inf)
+        return Known(ends, self.good, {of: begun for of, begun in self.begun.items() if of in names}, least)
+
     def outdate(self) -> None:
         """Mark refits as made with outdated noise."""
         self.good, self.least = False, math.inf

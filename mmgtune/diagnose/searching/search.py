@@ -6,28 +6,22 @@ chance would bring anywhere in the search, its size is worth speaking of, and no
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ...arrays import FloatArray
-from ...backends import Integrator
 from ...fitting.box import base_of
 from ...fitting.lost import require_simulated
 from ...hooks import Phase
 from ...trial import Held
-from ..bench import noise as noises
 from ..bench.hypotheses import Hypothesis, n_terms
 from ..bench.workbench import Point, Workbench
-from ..signatures.beside import free_with, kept_free
-from ..signatures.linear import Linear, linearise
-from ..signatures.screening import Score, scores
 from .base_fit import PRECISE, base_fit, unnoticed
-from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
-from .refitter import STRONG, Given, Known, Refitter, Stopped, hopeless_beside
-from .refitting import Refitting
+from .look import Step, finer, fitted_beside, look, look_again
+from .refit import ENOUGH, Refit, rivals_among
+from .refitter import STRONG, Stopped, hopeless_beside
 
 ALMOST = 0.9
 """Share of the best gain from which a finer integration step, which has no parameter, is believed before any effect."""
@@ -45,40 +39,6 @@ AS_WELL = 0.02
 ALIKE, HARDLY = 0.0005, 0.05
 """Share of the fall of chi-squared, and chi-squared per residual, that one value for all may leave beside values of
 each run to be taken for them: a current that is the same within a hundredth belongs in the profile."""
-
-FINER = 4
-"""The integration step as a cause: a Runge-Kutta step this many times finer."""
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """One look at what is left.
-
-    base     the point with the causes accepted before
-    refits   best first
-    scores   of every hypothesis
-    rivals   of the best: hypotheses of other effects that do nearly as well
-    accepted whether the best is believed
-    reason   why not, where it is not
-    finer    fall of chi-squared by a finer integration step, None where not tried
-    evenly   fall of chi-squared by inputs that change evenly between the updates of a log that looks held
-    """
-
-    base: Point
-    linear: Linear
-    scores: list[Score]
-    refits: list[Refit]
-    rivals: list[Refit]
-    accepted: bool
-    reason: str
-    finer: float | None = None
-    evenly: float | None = None
-
-    def settled_by(self, fall: float | None, share: float) -> bool:
-        """Whether a fall of chi-squared by what has no parameter is believed before any effect, from a share of the
-        best of these."""
-        best = self.refits[0].gain if self.refits else 0.0
-        return fall is not None and fall > max(2.0 * ENOUGH, share * best)
 
 
 @dataclass(eq=False)
@@ -114,13 +74,16 @@ def search(
     hypotheses: Sequence[Hypothesis],
     in_place: Sequence[Hypothesis] = (),
     say: Callable[[str], None] = lambda _: None,
+    again: Step | None = None,
 ) -> Found:
     """Forward search with a backward look after each addition; where it is stopped, what was accepted by then.
 
     in_place  hypotheses that do the same as targets; looked at where these end at a bound of their box
+    again     the first look of another search, among these hypotheses and more, which is taken up once more
     """
-    say("re-tuning the model without any cause")
-    base = base_fit(bench)
+    if again is None:
+        say("re-tuning the model without any cause")
+    base = base_fit(bench) if again is None else again.base
     if not np.isfinite(base.chi2):
         problem = bench.problem_of(base.names).with_offsets(base.offsets)
         require_simulated(bench.model.profile, problem, base.unit, bench.trials)
@@ -137,7 +100,10 @@ def search(
         number = len(found.causes) + 1
         say(Phase("looking for a cause" if number == 1 else f"looking for cause {number}", look=number))
         try:
-            step = look(bench, found.final, left, first=not found.steps)
+            if again is not None and not found.steps:
+                step = look_again(bench, again, left)
+            else:
+                step = look(bench, found.final, left, first=not found.steps)
         except Stopped:
             break
         found.steps.append(step)
@@ -219,135 +185,6 @@ def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
 def _left(hypotheses: Sequence[Hypothesis], found: Found, dropped: Sequence[Hypothesis]) -> list[Hypothesis]:
     """Hypotheses that may still be looked at beside the causes found."""
     return [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
-
-
-def finer(integrator: Integrator) -> Integrator:
-    """A Runge-Kutta step that is fine enough for any ship."""
-    return Integrator("rk4", FINER * integrator.substeps)
-
-
-def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool) -> Step:
-    """Scores of all hypotheses at a point, refits of the best, and whether the best of those is to be believed.
-
-    Noise is estimated again from what the best refit and all other signatures together leave: with fewer of them a
-    cause would pass for noise with a memory.
-    """
-    names = [name for h in hypotheses for name in h.bases]
-    varying = [name for h in hypotheses if h.by for name in h.bases]
-    linear = linearise(bench, point, names, varying=varying, roughly=True)
-    ranked = scores(linear, hypotheses)
-    known = Known()
-    best = Refitting(Refitter(bench, point, linear, known)).best(ranked, quick=True)
-    richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
-    at_best = linear if richest is point else linearise(bench, richest, names, roughly=True)
-    noise = _noise_at(bench, at_best)
-    if _differs(bench.noise, noise):
-        bench.know(noise)
-        left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0).chi2
-        tolerance = unnoticed(bench, left)
-        point = bench.refit(point.names, point.unit[:, None], point.offsets, tolerance=tolerance)
-        linear = linearise(bench, point, names, varying=varying, roughly=True)
-        ranked = scores(linear, hypotheses)
-        known.outdate()
-    given = _as_given(bench, point, hypotheses)
-    fitted = Refitting(Refitter(bench, point, linear, known, given)).best(ranked, quick=False)
-    seen = _with_inputs_seen(linear, fitted)
-    if seen is not linear:  # with less left open more may be told, and other refits be worth their while
-        linear, ranked = seen, scores(seen, hypotheses)
-        fitted = Refitting(Refitter(bench, point, linear, known, given)).best(ranked, quick=False)
-    refits = believable_first(fitted, bench.options.level)
-    if refits and refits[0] is not fitted[0] and fitted[0].by_chance(bench.options.level):
-        told = _in_a_form_told(refits, fitted[0], bench.options.level)
-        refits = refits if told or _stands_beside(bench, refits[0], fitted[0]) else fitted
-    finer_gain = None
-    if first:
-        tolerance = unnoticed(bench, point.chi2)
-        by = finer(point.integrator)
-        other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=by, tolerance=tolerance)
-        finer_gain = point.chi2 - other.chi2
-    evenly = None
-    if bench.held and bench.updates is None:
-        read = replace(bench)
-        read.read_evenly()
-        evenly = point.chi2 - read.refit(point.names, point.unit[:, None], point.offsets).chi2
-    rivals = rivals_among(refits) if refits else []
-    accepted, reason = decide(bench, refits, rivals)
-    return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
-
-
-def _with_inputs_seen(linear: Linear, fitted: Sequence[Refit]) -> Linear:
-    """The linear problem of a look with no more left open by the inputs than the best refit shows."""
-    if not fitted or fitted[0].gain < 2.0 * ENOUGH:
-        return linear
-    best = fitted[0].hypothesis
-    explained = linear.columns_of(best.bases, best.groups) if best.by else linear.columns(linear.absent(best.names))
-    return linear.with_inputs_seen(fitted[0].point.chi2, explained)
-
-
-def _in_a_form_told(refits: Sequence[Refit], more: Refit, level: float) -> bool:
-    """Whether what explains more, though by chance perhaps, is another form of the best that is believed, or of what
-    does nearly as well: two rates of a rudder where one is told."""
-    forms = [one for one in refits if one.hypothesis.effect is more.hypothesis.effect and not one.by_chance(level)]
-    return any(one is refits[0] or not refits[0].beats(one) for one in forms)
-
-
-def _stands_beside(bench: Workbench, one: Refit, more: Refit) -> bool:
-    """Whether a cause is needed beside what explains more, though by chance perhaps: else it may be a part of that."""
-    both = _with(bench, more.point, one)
-    return (more.point.chi2 - both.chi2) / one.score.inflation - one.cost >= ENOUGH
-
-
-def _with(bench: Workbench, point: Point, other: Refit, hopeless: float = math.inf) -> Point:
-    """A point refitted with the hypothesis of a refit besides, from where that ended."""
-    own = other.point.unit[-len(other.hypothesis.names) :]
-    return bench.refit(
-        free_with(point, other.hypothesis),
-        np.concatenate([point.unit[kept_free(point, other.hypothesis)], own])[:, None],
-        point.offsets,
-        spreads={**point.spreads, **other.point.spreads},
-        hopeless=hopeless,
-    )
-
-
-def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) -> Given | None:
-    """The point refitted with what has leeway at the profile's values, where that leaves much and no run is lost."""
-    kept = [i for i, name in enumerate(point.names) if name not in bench.believed.leeway]
-    if len(kept) == len(point.names):
-        return None
-    names, start = [point.names[i] for i in kept], point.unit[kept][:, None]
-    there = bench.refit(
-        names,
-        start,
-        point.offsets,
-        integrator=point.integrator,
-        tolerance=unnoticed(bench, point.chi2),
-        spreads=point.spreads,
-    )
-    if not STRONG * bench.problem.n_residuals <= there.chi2 < math.inf:
-        return None
-    alike = [h for h in hypotheses if not h.by]
-    linear = linearise(bench, there, [name for h in alike for name in h.bases], roughly=True)
-    ranked = scores(linear, alike)
-    ranked.sort(key=lambda score: -score.score)
-    return Given(there, linear, {score.hypothesis.names: score.step for score in ranked})
-
-
-def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
-    """Noise from the residual less all signatures, in the units residuals had before any whitening."""
-
-    def fitted(residuals: FloatArray) -> FloatArray:
-        return bench.noise.restore(linear.fitted(bench.noise.apply(residuals))[linear.measured])
-
-    return noises.estimate(bench.problem.cases, bench.noise.restore(linear.noise[linear.measured]), fitted)
-
-
-def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
-    """Whether two noise models give noticeably different weights."""
-    for channel, one in a.channels.items():
-        other = b.channels[channel]
-        if abs(np.log(one.filter[2] / other.filter[2])) > 0.02 or abs(one.phi - other.phi) > 0.05:
-            return True
-    return False
 
 
 def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
@@ -441,7 +278,7 @@ def _in_plainer_form(
     for one in sorted(plainer, key=lambda one: len(one.names)):
         refit = refits.get(one.names)
         start = np.full(len(one.names), mean)  # where it was not looked at: one rate of the rudder for two
-        other = _with(bench, fewer, refit) if refit else _exchanged(bench, fewer, (), one.names, start)
+        other = fitted_beside(bench, fewer, refit) if refit else _exchanged(bench, fewer, (), one.names, start)
         saved = (len(cause.names) - len(one.names)) * bench.price
         inflation = (refit or step.refits[0]).score.inflation
         if (other.chi2 - found.final.chi2) / inflation < saved + ENOUGH:
@@ -480,7 +317,7 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
         if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
             continue
         for start in (found.final, fewer):  # a ship tuned to nothing in its place may be far off
-            other = _with(bench, _where(fewer, start), rival, hopeless_beside(bench, found.final.chi2))
+            other = fitted_beside(bench, _where(fewer, start), rival, hopeless_beside(bench, found.final.chi2))
             one = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
             if not best.beats(one):
                 rivals.setdefault(one.hypothesis.tag, one)
