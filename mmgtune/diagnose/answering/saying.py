@@ -76,7 +76,7 @@ def said(answer: Answer) -> Said:
     beside = ""
     if answer.causes and answer.verdict != "interrupted" and not answer.gain.form_is_off:
         far = moved_in_words(answer.moved)
-        beside = _joined(f"Re-tuned beside that: {far}." if far else "", weighed(answer.moved))
+        beside = _joined(f"Re-tuned beside that: {far}." if far else "", _of_ship(answer))
     return Said(" ".join([apart + _of_causes(answer), *more]), beside)
 
 
@@ -159,14 +159,19 @@ def _of_none(answer: Answer) -> Said:
         )
     if far := moved_in_words(answer.moved):
         said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-        why = _joined(besides(answer.moved), weighed(answer.moved), few, _fading(answer))
+        why = _joined(besides(answer.moved), _of_ship(answer), few, _fading(answer))
         return Said(said, why, *_in_place(answer))
-    far = _joined(far_off(answer.moved), weighed(answer.moved))
+    far = _joined(far_off(answer.moved), _of_ship(answer))
     noise = "the noise of the measurements"
     first = f"Nothing is wrong beyond {noise}: the re-tuned model fits these trials, and {none}."
     if far or answer.instead:  # it fits, which is not to say that nothing is wrong
         first = f"The re-tuned model fits these trials to {noise}, and {none}."
     return Said(first, _joined(far, few, _fading(answer)), *_in_place(answer))
+
+
+def _of_ship(answer: Answer) -> str:
+    """What the trials contradict of the ship that is no target; of her hull where they are not too few for that."""
+    return weighed(answer.moved, of_hull=not answer.gain.too_few)
 
 
 def _in_place(answer: Answer) -> tuple[str, str]:

@@ -100,10 +100,19 @@ class Retuned:
         """In a sentence: "resistance going straight (R_0) 47 ± 4 % above its pre-determined value"."""
         assert self.change is not None
         assert self.deviation is not None
-        symbol, side = self.name.rpartition(".")[2], "above" if self.change > 0.0 else "below"
-        size, error = 100.0 * abs(self.change), 100.0 * NORMAL_95 * self.deviation
+        error = 100.0 * NORMAL_95 * self.deviation
         digits = 0 if error >= 1.0 else 1
-        return f"{self.label} ({symbol}) {size:.{digits}f} ± {error:.{digits}f} % {side} its pre-determined value"
+        return self._by(f"{100.0 * abs(self.change):.{digits}f} ± {error:.{digits}f} %")
+
+    @property
+    def roughly(self) -> str:
+        """Likewise without its interval, which holds only where the form of all else is right."""
+        assert self.change is not None
+        return self._by(f"{100.0 * abs(self.change):.0f} %")
+
+    def _by(self, size: str) -> str:
+        symbol, side = self.name.rpartition(".")[2], "above" if (self.change or 0.0) > 0.0 else "below"
+        return f"{self.label} ({symbol}) {size} {side} its pre-determined value"
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -145,21 +154,30 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     return sorted(told, key=_distance, reverse=True)
 
 
-def weighed(moved: Sequence[Retuned]) -> str:
-    """What the trials contradict of mass, inertia and the hull, in sentences; "" for nothing."""
+def weighed(moved: Sequence[Retuned], of_hull: bool = True) -> str:
+    """What the trials contradict of mass, inertia and the hull, in sentences; "" for nothing.
+
+    of_hull  whether of the hull too: where the trials are told, and by more than a few
+    """
     far = [one for one in moved if one.believed is not None and one.far]
-    if not far:
-        return ""
-    they = "It is no target" if len(far) == 1 else "They are no targets"
-    of_hull = [one.name in STEERED_BY for one in far]
-    why = []
-    if not all(of_hull):
-        why.append("the ship may be loaded otherwise than the profile says, or it was worked out otherwise")
-    if any(of_hull):
-        why.append("her hull may steer otherwise than that of the profile")
-    if any(of_hull) and not all(of_hull) and all((one.change or 0.0) > 0.0 for one in far):
-        why.append("all of these are larger in shallow water")
-    return f"The trials ask for {listed([one.words for one in far])}. {they}: {'; '.join(why)}."
+    heavy = [one for one in far if one.name not in STEERED_BY]
+    hull = [one for one in far if one.name in STEERED_BY and of_hull]
+    told = []
+    if heavy:
+        they = "It is no target" if len(heavy) == 1 else "They are no targets"
+        told.append(
+            f"The trials ask for {listed([one.words for one in heavy])}. {they}: the ship may be loaded otherwise than "
+            "the profile says, or it was worked out otherwise."
+        )
+    if hull:
+        takes = "it takes" if len(hull) == 1 else "they take"
+        told.append(
+            f"They are fitted best with {listed([one.roughly for one in hull])}, though no target: her hull may steer "
+            f"otherwise than that of the profile, or {takes} up what other coefficients are off by."
+        )
+    if heavy and hull and all((one.change or 0.0) > 0.0 for one in far):
+        told.append("All of these are larger in shallow water.")
+    return " ".join(told) if heavy or not told else told[0].replace("They are", "The trials are", 1)
 
 
 def in_words(moved: Sequence[Retuned]) -> str:
