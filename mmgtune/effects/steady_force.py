@@ -1,29 +1,43 @@
-"""A side force and a yaw moment that act all the time, whatever the ship does."""
+"""A force and a yaw moment that act all the time, whatever the ship does."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ..physics.quantities import Force, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter
-from .signs import each
+from .signs import signed
 
 
 class SteadyForce(NamedTuple):
     """See the parameters below."""
 
+    ahead: Lanes
     side: Lanes
     moment: Lanes
 
 
 def steady_force(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: SteadyForce) -> Force:
-    """Side force [N] and yaw moment [N m] about midship, constant in the ship's axes: of a thruster left on, of a tow.
+    """Force ahead, side force [N] and yaw moment [N m] about midship, constant in the ship's axes: of a tow, of a chain
+    that drags, of a thruster left on.
 
-    No force ahead, which trials do not tell from a resistance that is off.
+    At one speed a force ahead is a resistance that is off; as she slows down in a turn it stays what it was.
     """
     nothing = 0.0 * state.u
-    return Force(X=nothing, Y=nothing + e.side, N=nothing + e.moment)
+    return Force(X=nothing + e.ahead, Y=nothing + e.side, N=nothing + e.moment)
 
 
-_WORDS = {"side": "side force of {}", "moment": "yaw moment of {}"}
+_WORDS = {
+    "ahead": ("force of {}", "ahead", "astern"),
+    "side": ("side force of {}", "to starboard", "to port"),
+    "moment": ("yaw moment of {}", "to starboard", "to port"),
+}
+
+
+def _sentence(v: Mapping[str, str]) -> str:
+    pushes = " and ".join(words.format(signed(v[name], *ways)) for name, (words, *ways) in _WORDS.items() if name in v)
+    thing = "a thruster left on or a tow" if "side" in v else "a tow or a chain that drags"
+    return f"A steady {pushes} acted on the ship, as of {thing}"
+
 
 EFFECT = ForceEffect(
     kind="effects.steady-force",
@@ -33,6 +47,13 @@ EFFECT = ForceEffect(
     function=steady_force,
     cites=(),
     fields={
+        "ahead": Parameter(
+            "force ahead",
+            "N",
+            bounds=lambda ship: (-0.03 * ship.force, 0.03 * ship.force),
+            typical=lambda ship: 0.002 * ship.force,
+            bounds_source="about twice the resistance going straight",
+        ),
         "side": Parameter(
             "force to starboard",
             "N",
@@ -49,10 +70,6 @@ EFFECT = ForceEffect(
         ),
     },
     akin=("hull-asymmetry", "propeller-walk", "propeller-side-force"),
-    variants=(("side", "moment"),),
-    sentence=lambda v: (
-        "A steady "
-        + each(_WORDS, v, ("to starboard", "to port"))
-        + " acted on the ship, as of a thruster left on or a tow"
-    ),
+    variants=(("side", "moment"), ("ahead",)),
+    sentence=_sentence,
 )

@@ -88,7 +88,7 @@ EFFECT = ActuatorEffect(
         "to_starboard": _rate(" towards starboard"),
         "to_port": _rate(" towards port"),
     },
-    variants=(("time_constant",), ("rate_limit",), ("to_starboard", "to_port")),
+    variants=(("time_constant",), ("rate_limit",), ("time_constant", "rate_limit"), ("to_starboard", "to_port")),
     besides=("to_starboard", "to_port"),
     sentence=_sentence,
 )

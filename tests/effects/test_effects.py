@@ -43,7 +43,7 @@ STRONG = {
     "wind": {"speed": 8.0, "direction": 1.0},
     "waves": {"height": 2.0, "direction": 1.0},
     "wave-drift": {"force": 5000.0, "direction": 2.0},
-    "steady-force": {"side": 3000.0, "moment": -4e4},
+    "steady-force": {"ahead": -2000.0, "side": 3000.0, "moment": -4e4},
     "rudder-stall": {"angle": 0.3, "slope": 0.4},
     "engine-droop": {"share": 0.2},
     "hull-asymmetry": {"Y_0": 0.002, "N_0": -0.0004},

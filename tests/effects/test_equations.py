@@ -210,6 +210,8 @@ def test_a_steady_force_is_the_same_at_any_speed_and_heading(added):
     for state in (MOVING, MOVING._replace(u=0.5, psi=2.0), MOVING._replace(u=-1.0, r=0.0)):
         force, _ = added("steady-force", {"side": 3000.0, "moment": -4e4}, state)
         np.testing.assert_allclose(force, [0.0, 3000.0, -4e4], atol=1e-6)
+        force, _ = added("steady-force", {"ahead": -5000.0}, state)
+        np.testing.assert_allclose(force, [-5000.0, 0.0, 0.0], atol=1e-6)
 
 
 def test_a_hull_that_is_not_alike_on_both_sides_is_pushed_by_the_square_of_the_speed(added):

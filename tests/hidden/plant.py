@@ -216,6 +216,7 @@ def outside(s, t, y, psi, u_g, v_g):
     if t % 60.0 < 20.0:
         Y += s.unknown_thruster_bursts
         N += 0.4 * s.L_pp * s.unknown_thruster_bursts
+    X += s.steady_ahead
     Y += s.steady_side
     N += s.steady_moment
     X += suction * np.sin(psi)

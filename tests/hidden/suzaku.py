@@ -122,7 +122,7 @@ NULL: dict[str, dict[str, float]] = {
     "loading": {"draught": 1.0, "trim": 0.0, "displacement": 1.0},
     "wind": {"speed": 0.0, "direction": 0.0},
     "wave-drift": {"force": 0.0, "direction": 0.0},
-    "steady-force": {"side": 0.0, "moment": 0.0},
+    "steady-force": {"ahead": 0.0, "side": 0.0, "moment": 0.0},
     "hull-asymmetry": {"Y_0": 0.0, "N_0": 0.0},
     "propeller-side-force": {"force": 1.0, "moment": 1.0},
     "memory": {"time_constant": 0.0, "sway": 0.0, "yaw": 0.0},
@@ -189,7 +189,7 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["wind_speed"], p["wind_direction"] = e["wind"]["speed"], e["wind"]["direction"]
     p["wave_force"], p["wave_direction"] = e["wave-drift"]["force"], e["wave-drift"]["direction"]
     p.update(e["hull-asymmetry"])
-    p["steady_side"], p["steady_moment"] = e["steady-force"]["side"], e["steady-force"]["moment"]
+    p.update({f"steady_{name}": value for name, value in e["steady-force"].items()})
     p["side_force"], p["side_moment"] = e["propeller-side-force"]["force"], e["propeller-side-force"]["moment"]
     p["memory_Y"] = e["memory"]["time_constant"] + e["memory"]["sway"]
     p["memory_N"] = e["memory"]["time_constant"] + e["memory"]["yaw"]

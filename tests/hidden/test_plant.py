@@ -154,9 +154,9 @@ def test_signs_of_wind_and_waves():
 
 
 def test_a_steady_force_stays_with_the_ship_whatever_she_does():
-    s = coefficients({}, {"steady-force": {"side": 3e3, "moment": -9e4}})
+    s = coefficients({}, {"steady-force": {"ahead": -2e3, "side": 3e3, "moment": -9e4}})
     for psi, u in ((0.0, 3.0), (2.0, 1.0), (-1.0, -0.5)):
-        assert plant.outside(s, 40.0, 0.0, psi, u, 0.0) == pytest.approx((0.0, 3e3, -9e4))
+        assert plant.outside(s, 40.0, 0.0, psi, u, 0.0) == pytest.approx((-2e3, 3e3, -9e4))
 
 
 def test_a_hull_that_is_not_alike_on_both_sides_is_pushed_by_the_square_of_the_speed():

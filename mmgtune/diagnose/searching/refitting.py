@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from ..bench.hypotheses import Hypothesis
 from ..bench.workbench import Point, Workbench
 from ..signatures.beside import free_with, kept_free, origin
+from ..signatures.linear import inwards, typical
 from ..signatures.screening import ChanceScores, Score, evidence, told_by
 from .refit import ENOUGH, Refit
 from .refitter import HOPELESS, Refitter
@@ -37,6 +38,9 @@ WORTH_GOING_ON = 0.5
 FEW = 4
 """The best few."""
 
+FURTHER = (1.0, 2.0)
+"""Typical sizes at which a refit begins again beside a form of its effect with fewer parameters."""
+
 
 @dataclass(frozen=True, eq=False)
 class Refitting:
@@ -61,6 +65,7 @@ class Refitting:
         fitted = self._fitted(shortlist.for_all_runs(order, quick=quick))
         fitted += self._fitted(shortlist.of_runs(order, [end for _, end in fitted], quick=quick))
         fitted += self._fitted(akin(order, fitted))
+        fitted = [(score, self._beside_fewer(score, end, fitted)) for score, end in fitted]
         asked = [s.hypothesis for s in ranked]
         chance = None if quick else ChanceScores(refitter.linear, asked, refitter.bench.options.seed)
         n_terms = max(1, sum(s.hypothesis.effect.one_of_many for s in ranked))
@@ -95,6 +100,33 @@ class Refitting:
             ends[k] = refitter.on(chosen[k], ends[k], ALL_STEPS)
         refitter.known.ends.update((score.hypothesis.names, end) for score, end in zip(chosen, ends, strict=True))
         return list(zip(chosen, ends, strict=True))
+
+    def _beside_fewer(self, score: Score, end: Point, fitted: Sequence[tuple[Score, Point]]) -> Point:
+        """The refit of a hypothesis, where it ended with what it has more than another at the end of its range: from
+        there the way on may be flat, as for the lag of a gear whose rate is limited.  Begun again from the other."""
+        asked, refitter = score.hypothesis, self.refitter
+        for fewer, there in fitted:
+            known = dict(zip(there.names, there.unit, strict=True))
+            more = [name for name in asked.names if name not in known]
+            if not (asked.holds(fewer.hypothesis) and fewer.hypothesis.by == asked.by):
+                continue
+            null = dict(zip(more, refitter.bench.null(more), strict=True))
+            away = dict(zip(more, inwards(refitter.bench.null(more)), strict=True))
+            own = dict(zip(end.names, end.unit, strict=True))
+            if not all(away[name] and own[name] == null[name] for name in more):
+                continue
+            size = {name: away[name] * typical(refitter.bench, name) for name in more}
+            starts = [
+                [
+                    known[name] if name in known else np.clip(null[name] + by * size[name], 0.0, 1.0)
+                    for name in end.names
+                ]
+                for by in FURTHER
+            ]
+            begun = replace(refitter.point, offsets=there.offsets)
+            end = min([end, *refitter.steps(begun, score, np.array(starts).T, MOST_STEPS)], key=lambda one: one.chi2)
+            refitter.known.ends[asked.names] = end
+        return end
 
     def _continue(self, chosen: Sequence[Score], ends: list[Point], going: Sequence[int], steps: int) -> None:
         """Continue some of the refits, in their place among ``ends``."""
