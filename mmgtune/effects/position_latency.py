@@ -1,10 +1,11 @@
-"""Positions are logged late: the receiver shows where the ship was a moment ago."""
+"""Positions are logged late: the receiver shows where the ship was a moment ago, and perhaps how she moved then."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from ..physics.frame import to_earth
+from ..physics.frame import to_earth, to_ship
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
 from .signs import signed
@@ -14,6 +15,7 @@ class PositionLatency(NamedTuple):
     """See the parameters below."""
 
     seconds: Lanes
+    with_velocity: Lanes
 
 
 def _way(state: State, du: Lanes, dv: Lanes, dr: Lanes, T: Lanes) -> tuple[Lanes, Lanes]:
@@ -35,32 +37,64 @@ def _moved(state: State, north: Lanes, east: Lanes) -> State:
     return State(x=state.x + north, y=state.y + east, psi=state.psi, u=state.u, v_m=state.v_m, r=state.r)
 
 
+def _of_then(state: State, du: Lanes, dv: Lanes, dr: Lanes, T: Lanes) -> State:
+    """The velocity over ground of T [s] ago, in the axes of now, of a motion like that of ``_way``."""
+    then = to_earth(state.psi - T * (state.r - 0.5 * T * dr), state.u - T * du, state.v_m - T * dv)
+    u, v_m = to_ship(state.psi, *then)
+    return State(x=state.x, y=state.y, psi=state.psi, u=u, v_m=v_m, r=state.r)
+
+
 def position_latency(
     start: State, end: State, held: tuple[()], h: Lanes, e: PositionLatency
 ) -> tuple[State, tuple[()]]:
-    """Position of some seconds ago, by the rates of u, v_m and r over the last step (assumption: they were the same
-    before; 1 cm off in a turn of 35 deg at 3 s and steps of 1 s)."""
+    """Position of some seconds ago, and velocity over ground where that is late too, by the rates of u, v_m and r over
+    the last step (assumption: they were the same before; 1 cm off in a turn of 35 deg at 3 s and steps of 1 s)."""
     step = np.maximum(h, 1e-9)
-    north, east = _way(end, (end.u - start.u) / step, (end.v_m - start.v_m) / step, (end.r - start.r) / step, e.seconds)
-    return _moved(end, -north, -east), ()
+    du, dv, dr = (end.u - start.u) / step, (end.v_m - start.v_m) / step, (end.r - start.r) / step
+    north, east = _way(end, du, dv, dr, e.seconds + e.with_velocity)
+    return _moved(_of_then(end, du, dv, dr, e.with_velocity), -north, -east), ()
 
 
 def position_settled(state: State, e: PositionLatency) -> tuple[State, tuple[()]]:
     """The same in a steady motion."""
-    north, east = _way(state, 0.0, 0.0, 0.0, e.seconds)
-    return _moved(state, -north, -east), ()
+    north, east = _way(state, 0.0, 0.0, 0.0, e.seconds + e.with_velocity)
+    return _moved(_of_then(state, 0.0, 0.0, 0.0, e.with_velocity), -north, -east), ()
 
 
 def position_latency_inverse(logged: State, e: PositionLatency) -> State:
-    """Where the ship is in a steady motion, from where she was."""
-    north, east = _way(logged, 0.0, 0.0, 0.0, e.seconds)
-    return _moved(logged, north, east)
+    """Where the ship is in a steady motion, from where she was; and how she moves, from how she did."""
+    now = _of_then(logged, 0.0, 0.0, 0.0, -e.with_velocity)
+    north, east = _way(now, 0.0, 0.0, 0.0, e.seconds + e.with_velocity)
+    return _moved(now, north, east)
+
+
+def _delay(of: str) -> Parameter:
+    return Parameter(
+        f"how old {of} when logged",
+        "s",
+        low=-10.0,
+        high=60.0,
+        bounds=lambda ship: (-0.1 * ship.L / ship.U, 0.3 * ship.L / ship.U),
+        typical=lambda ship: 0.03 * ship.L / ship.U,
+        bounds_source="three tenths of the time of a ship length; a tenth early, by a receiver that looks ahead",
+    )
+
+
+def _sentence(v: Mapping[str, str]) -> str:
+    late = {name: signed(size, "late", "early") for name, size in v.items()}
+    told = [f"Positions were logged {late['seconds']}"] if "seconds" in v else []
+    if "with_velocity" in v:
+        together = (
+            "The position and the velocity over ground were logged" if not told else "with the velocity over ground"
+        )
+        told.append(f"{together} {late['with_velocity']}")
+    return ", and ".join(told)
 
 
 EFFECT = FilterEffect(
     kind="effects.position-latency",
     tag="position-latency",
-    title="latency of the position",
+    title="latency of the receiver",
     told_by="the delay of the receiver, from its papers or beside a second one",
     params=PositionLatency,
     function=position_latency,
@@ -68,16 +102,9 @@ EFFECT = FilterEffect(
     inverse=position_latency_inverse,
     cites=(),
     fields={
-        "seconds": Parameter(
-            "how old the position is when it is logged",
-            "s",
-            low=-10.0,
-            high=60.0,
-            bounds=lambda ship: (-0.1 * ship.L / ship.U, 0.3 * ship.L / ship.U),
-            typical=lambda ship: 0.03 * ship.L / ship.U,
-            bounds_source="three tenths of the time of a ship length; a tenth early, by a receiver that looks ahead",
-        )
+        "seconds": _delay("the position is"),
+        "with_velocity": _delay("position and velocity over ground are"),
     },
-    variants=(("seconds",),),
-    sentence=lambda v: f"Positions were logged {signed(v['seconds'], 'late', 'early')}",
+    variants=(("seconds",), ("with_velocity",)),
+    sentence=_sentence,
 )

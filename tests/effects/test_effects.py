@@ -59,7 +59,7 @@ STRONG = {
     "log-zero": {"ahead": 0.05, "abeam": -0.03},
     "gyro-scale": {"factor": 1.03, "curve": 0.05},
     "gyro-bias": {"rate": 0.001},
-    "position-latency": {"seconds": 2.5},
+    "position-latency": {"seconds": 1.5, "with_velocity": 1.0},
     "velocity-filter": {"over_ground": 4.0, "along_axes": 2.0, "yaw_rate": 3.0, "ahead": 1.5},
     "heading-filter": {"time_constant": 2.0, "alone": 1.0},
     "gyro-drift": {"heading": 3e-4, "heading_alone": -2e-4, "yaw_rate": 1e-6},

@@ -70,6 +70,18 @@ def test_positions_of_some_seconds_ago():
     np.testing.assert_array_equal(found.psi, fine.psi[EVERY])
 
 
+def test_a_late_receiver_shows_how_the_ship_moved_then_in_the_axes_of_now():
+    t, fine, samples = way()
+    found = logged("position-latency", samples, seconds=1.0, with_velocity=2.0)
+    seen = t[EVERY] >= 5.0
+    for shown, true in ((found.x, fine.x), (found.y, fine.y)):
+        np.testing.assert_allclose(shown[seen], np.interp(t[EVERY] - 3.0, t, true)[seen], atol=0.01)
+    over_ground = (fine.u + 1j * fine.v_m) * np.exp(1j * fine.psi)
+    then = np.interp(t[EVERY] - 2.0, t, over_ground) * np.exp(-1j * fine.psi[EVERY])
+    np.testing.assert_allclose((found.u + 1j * found.v_m)[seen], then[seen], atol=2e-3)
+    np.testing.assert_array_equal(found.r, fine.r[EVERY])
+
+
 def test_velocities_are_smoothed_over_ground_or_along_the_axes():
     t, fine, samples = way()
     T = 4.0

@@ -416,9 +416,11 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
     far_x, far_y = lever_x + e["antenna"]["x_alone"], lever_y + e["antenna"]["y_alone"]
     x, y = x + far_x * np.cos(psi) - far_y * np.sin(psi), y + far_x * np.sin(psi) + far_y * np.cos(psi)
     u, v = u - r * lever_y, v + r * lever_x
-    latency = e["position-latency"]["seconds"]
+    receiver = e["position-latency"]
+    latency = receiver["seconds"] + receiver["with_velocity"]
     x, y = _late(t, x, latency), _late(t, y, latency)
     north, east = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
+    north, east = _late(t, north, receiver["with_velocity"]), _late(t, east, receiver["with_velocity"])
     step = e["unknown-position-step"]["magnitude"] * np.sqrt(0.5) * (t >= 150.0)
     x, y = x + step, (1.0 + e["unknown-easting-scale"]["magnitude"]) * y + step
     smooth, compass = e["velocity-filter"], e["compass-deviation"]

@@ -132,7 +132,7 @@ NULL: dict[str, dict[str, float]] = {
     "antenna": {"x": 0.0, "y": 0.0, "x_alone": 0.0, "y_alone": 0.0},
     "heading-bias": {"angle": 0.0, "alone": 0.0},
     "compass-deviation": {"sine": 0.0, "cosine": 0.0, "sine_alone": 0.0, "cosine_alone": 0.0},
-    "position-latency": {"seconds": 0.0},
+    "position-latency": {"seconds": 0.0, "with_velocity": 0.0},
     "velocity-filter": {"over_ground": 0.0, "along_axes": 0.0, "yaw_rate": 0.0, "ahead": 0.0},
     "heading-filter": {"time_constant": 0.0, "alone": 0.0},
     "gyro-drift": {"heading": 0.0, "heading_alone": 0.0, "yaw_rate": 0.0},
