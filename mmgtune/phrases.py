@@ -60,6 +60,11 @@ def in_percent(part: float, counted: bool = False) -> str:
     return f"{100.0 * part:.{0 if part < 0.995 or part == 1.0 else 1}f} %"
 
 
+def figures(value: float, digits: int = 2) -> str:
+    """A number to some figures, without a power of ten up to a million: "110", not "1.1e+02"."""
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
 def listed(words: Sequence[str], most: int | None = None) -> str:
     """Words as a phrase: "a, b and c"; "" for none.
 
@@ -73,4 +78,4 @@ def listed(words: Sequence[str], most: int | None = None) -> str:
 def aboard(ahead: float, across: float, digits: int = 3) -> str:
     """How far [m] one place of a ship is from another: "12 m aft and 3 m to starboard"."""
     way, side = "forward" if ahead >= 0.0 else "aft", "to starboard" if across >= 0.0 else "to port"
-    return f"{abs(ahead):.{digits}g} m {way} and {abs(across):.{digits}g} m {side}"
+    return f"{figures(abs(ahead), digits)} m {way} and {figures(abs(across), digits)} m {side}"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from mmgtune.phrases import aboard
+from mmgtune.phrases import aboard, figures
 
 
 @pytest.mark.parametrize(
@@ -15,3 +15,16 @@ from mmgtune.phrases import aboard
 )
 def test_a_place_aboard_is_told_by_words_and_no_sign(ahead, across, said):
     assert aboard(ahead, across) == said
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "said"),
+    [(114.7, 2, "110"), (0.4913, 2, "0.49"), (3.0, 2, "3"), (-151.0, 2, "-150"), (169.3, 3, "169"), (0.0, 2, "0")],
+)
+def test_numbers_have_no_power_of_ten(value, digits, said):
+    assert figures(value, digits) == said
+
+
+def test_a_place_far_off_is_told_in_metres():
+    """ "About 1.1e+02 m aft" was said of an antenna."""
+    assert aboard(-114.7, 0.4913, 2) == "110 m aft and 0.49 m to starboard"

@@ -14,7 +14,7 @@ from scipy.integrate import cumulative_trapezoid
 from ..arrays import FloatArray, runs_of_true
 from ..errors import LogError, Problem
 from ..inputs import INPUTS
-from ..phrases import counted
+from ..phrases import counted, figures
 from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
 from ..trial.checks.control_checks import fastest_change, looks_ordered
@@ -132,8 +132,8 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
         lines.append("  positions cannot be compared with velocities: the ship hardly moves")
     else:
         lines.append(
-            f"  positions missed by u, v, psi by {100 * positions['ship_axes']:.2g} % of the distance; "
-            f"read in earth axes by {100 * positions['earth_axes']:.2g} %"
+            f"  positions missed by u, v, psi by {figures(100 * positions['ship_axes'])} % of the distance; "
+            f"read in earth axes by {figures(100 * positions['earth_axes'])} %"
         )
     if positions["residual_x_m"] is not None and positions["residual_y_m"] is not None:
         said = f"  residual  integrated velocities leave x by {positions['residual_x_m']:.3g} m rms, y by "

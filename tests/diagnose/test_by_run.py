@@ -355,9 +355,10 @@ def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
     about_north = runs((10.2, 359.0), (10.2, 1.0)).sentence
     assert about_north.startswith("The wind was much the same")
     assert about_north.endswith(", from 0°")
-    assert runs((10.2, 239.6), (10.2, 59.6)).sentence == (
-        "The wind differed from run to run: 10 m/s, from no common direction"
-    )
+    everywhere = runs((10.2, 239.6), (10.2, 59.6))
+    assert everywhere.sentence == "The wind differed from run to run: 10 m/s, from no common direction"
+    assert everywhere.points_everywhere
+    assert not runs((10.2, 330.0), (14.2, 10.0)).points_everywhere
     about_north = runs((10.2, 330.0), (14.2, 10.0), (7.1, 350.0)).sentence
     assert about_north == "The wind differed from run to run: 7.1 to 14 m/s, from 330 to 010°"
     # An error common to all runs, as of the force of a wind, is larger than they differ by: the range is no interval.

@@ -715,21 +715,22 @@ def test_what_is_not_believed_and_removes_nothing_leaves_what_there_was(chance, 
 
 
 @pytest.mark.parametrize(
-    ("explained", "held_out", "sized", "doubt", "leads"),
+    ("explained", "held_out", "sized", "doubt", "everywhere", "leads"),
     [
-        (0.97, 0.9, True, None, True),
-        (0.97, 0.9, True, "", True),
-        (0.97, 0.9, True, "they go with the rudder angle", False),  # what is not of the run is no size of its cause
-        (0.7, 0.9, True, None, False),
-        (0.97, 0.5, True, None, False),
-        (0.97, 0.9, False, None, False),
+        (0.97, 0.9, True, None, False, True),
+        (0.97, 0.9, True, "", False, True),
+        (0.97, 0.9, True, "", True, False),  # waves of each run from everywhere, of a thrust that falls with drift
+        (0.97, 0.9, True, "they go with the rudder angle", False, False),  # not of the run: no size of its cause
+        (0.7, 0.9, True, None, False, False),
+        (0.97, 0.5, True, None, False, False),
+        (0.97, 0.9, False, None, False, False),
     ],
 )
 def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_is_most(
-    explained, held_out, sized, doubt, leads
+    explained, held_out, sized, doubt, everywhere, leads
 ):
     """An antenna 110 m aft, beside a form of the hull that nobody knows, was named without its size."""
-    runs = None if doubt is None else SimpleNamespace(doubt=doubt)
+    runs = None if doubt is None else SimpleNamespace(doubt=doubt, points_everywhere=everywhere)
     sentence = "The antenna stood 110 m aft"
     cause = SimpleNamespace(sized=sized, at_ends=False, tag="antenna", sentence=sentence, runs=runs)
     gain = SimpleNamespace(share_removed=held_out, surely_removed=0.0)

@@ -60,6 +60,50 @@ def test_the_quadrantal_deviation_of_a_compass_is_found(tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize(
+    ("hidden", "rivals", "covered"),
+    [
+        ({"steady-force": {"ahead": -2.5e4}}, ("thrust", "rpm-scale", "resistance", "loading"), {"ahead": -2.5e4}),
+        (
+            {"position-latency": {"with_velocity": 3.0}},
+            ("antenna", "velocity-filter", "clock-offset", "current", "hull-term"),
+            {"with_velocity": 3.0},
+        ),
+    ],
+    ids=lambda one: next(iter(one)) if isinstance(one, dict) else "",
+)
+def test_a_tow_and_a_late_receiver_are_found(hidden, rivals, covered, tmp_path):
+    """A chain that drags was less thrust, and a receiver that smooths all it shows in no registry."""
+    (tag,) = hidden
+    result = said_of(hidden, tmp_path, tag, *rivals)
+    assert [cause.tag for cause in result.causes] == [tag], result.sentence()
+    assert result.causes[0].runs is None
+    found = result.to_dict()["causes"][0]["parameters"]
+    assert set(found) == set(covered), result.sentence()
+    for name, truth in covered.items():
+        assert found[name]["ci95"][0] < truth < found[name]["ci95"][1], name
+    assert result.gain.share_removed > 0.9
+
+
+@pytest.mark.long
+def test_a_gear_of_a_limited_rate_that_lags_too_is_found_whole():
+    """Its rate alone was told: beside a rate the way on from no lag is flat."""
+    profile, rng = load_profile("suzaku"), np.random.default_rng(6)
+    ordered = []
+    four = [*load_trials("suzaku").trials.values()][:4]
+    for trial, angle, every in zip(four, (30.0, -20.0, 10.0, -30.0), (900.0, 60.0, 40.0, 80.0), strict=True):
+        turned = np.where((trial.t - 10.0) // every % 2 == 0, 1.0, -1.0) * (trial.t >= 10.0)
+        ordered.append(replace(trial, delta=turned * angle * DEG))
+    ship = with_effects(profile, {"steering-lag": {"time_constant": 5.0, "rate_limit": 2.5 * DEG}}, "made")
+    made = [logged(trial, motion, rng) for trial, motion in zip(ordered, sailed(ship, ordered), strict=True)]
+    result = diagnose(profile, made, DiagnoseOptions(effects=("steering-lag", "dead-time", "rudder-stall")))
+    assert [cause.tag for cause in result.causes] == ["steering-lag"], result.sentence()
+    found = result.to_dict()["causes"][0]["parameters"]
+    for name, truth in {"time_constant": 5.0, "rate_limit": 2.5 * DEG}.items():
+        assert found[name]["ci95"][0] < truth < found[name]["ci95"][1], name
+
+
+@pytest.mark.long
 def test_a_stall_that_leaves_the_force_some_of_its_slope_is_no_gain_of_the_rudder():
     profile = load_profile("suzaku")
     rng = np.random.default_rng(12)

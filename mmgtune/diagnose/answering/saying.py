@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...phrases import LARGE, capital, in_percent, listed, small
+from ...phrases import LARGE, capital, figures, in_percent, listed, small
 from ...units import DEG
 from ..bench.of_hull import AS_WELL
 from ..causes.belief import TOLD
@@ -100,7 +100,7 @@ def _of_causes(answer: Answer) -> str:
         before, after = answer.chi2
         return (
             f"{named} With that put right no other cause shows: the error of the re-tuned model falls from "
-            f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
+            f"{figures(math.sqrt(before))} to {figures(math.sqrt(after))} times the noise of the measurements."
         )
     named = _joined(named, clock_rate(answer.causes))
     gained = _joined(named, *_brought(answer))
@@ -164,7 +164,7 @@ def _of_none(answer: Answer) -> Said:
     far = _joined(far_off(answer.moved), _of_ship(answer))
     noise = "the noise of the measurements"
     first = f"Nothing is wrong beyond {noise}: the re-tuned model fits these trials, and {none}."
-    if far or answer.instead:  # it fits, which is not to say that nothing is wrong
+    if far or few or answer.instead:  # it fits, which is not to say that nothing is wrong
         first = f"The re-tuned model fits these trials to {noise}, and {none}."
     return Said(first, _joined(far, few, _fading(answer)), *_in_place(answer))
 
@@ -188,7 +188,7 @@ def _fading(answer: Answer) -> str:
     """That slow errors of positions or heading count as noise, where they are far larger than quick ones."""
     far = {name: one["fading"] for name, one in answer.noise.items() if one["fading"] > FADES * one["white"]}
     positions = max(far.get("x", 0.0), far.get("y", 0.0))
-    told = [f"{positions:.2g} m in the positions"] if positions else []
+    told = [f"{figures(positions)} m in the positions"] if positions else []
     told += [f"{far['psi'] / DEG:.2g}° in the heading"] if "psi" in far else []
     if not told:
         return ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -282,15 +282,28 @@ class ByRun:
         sense = "towards" if self.effect.told_as else "from"
         if self._much_alike:
             return f", {sense} {round(math.degrees(np.angle(self._vectors.mean()))) % 360}°"
-        angles = np.array([told[0] for k in shown if (told := self.towards(k))])
-        if not len(angles):
+        sector = self._sector(shown)
+        if sector is None:
             return ""
+        if sector[1] - sector[0] > WIDE:
+            return f", {sense} no common direction"
+        ends = dict.fromkeys(f"{round(math.degrees(end)) % 360:03d}" for end in sector)
+        return f", {sense} {' to '.join(ends)}°"
+
+    def _sector(self, groups: Iterable[int]) -> tuple[float, float] | None:
+        """From which direction to which [rad] the values of some groups point; None where they have none."""
+        angles = np.array([told[0] for k in groups if (told := self.towards(k))])
+        if not len(angles):
+            return None
         middle = float(np.angle(np.exp(1j * angles).sum()))
         off = [math.remainder(angle - middle, 2.0 * math.pi) for angle in angles.tolist()]
-        if max(off) - min(off) > WIDE:
-            return f", {sense} no common direction"
-        ends = dict.fromkeys(f"{round(math.degrees(middle + end)) % 360:03d}" for end in (min(off), max(off)))
-        return f", {sense} {' to '.join(ends)}°"
+        return middle + min(off), middle + max(off)
+
+    @property
+    def points_everywhere(self) -> bool:
+        """Whether the values have directions, and no common one: two numbers of each run fit nearly anything."""
+        sector = self._sector(range(len(self.groups)))
+        return sector is not None and sector[1] - sector[0] > WIDE
 
     @property
     def _of_what(self) -> str:

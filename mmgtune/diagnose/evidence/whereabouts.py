@@ -16,7 +16,7 @@ import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ...documents import finite
-from ...phrases import QUANTITIES
+from ...phrases import QUANTITIES, figures
 from ...trial import Trial, measured_wind
 from ...trial.checks.set_checks import odd_in_words
 from ...units import DEG
@@ -195,8 +195,8 @@ class Whereabouts:
             when = max(self.phases, key=lambda one: self.phases[one].get(axis, 0.0))
             there = math.sqrt(max(self.phases[when].get(axis, 0.0), 0.0))
             found.append(
-                f"By inverse dynamics the {AXES[axis]} stands out most, {size:.2g} times its noise, and most "
-                f"{_DURING[when]}, {there:.2g} times."
+                f"By inverse dynamics the {AXES[axis]} stands out most, {figures(size)} times its noise, and most "
+                f"{_DURING[when]}, {figures(there)} times."
             )
         best = self.strongest
         if best:

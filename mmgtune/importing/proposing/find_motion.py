@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ... import units
+from ...phrases import figures
 from ...trial.kinematics import FITS
 from ...units import DEG
 from .finder import ROUGH, Finder
@@ -99,9 +100,9 @@ def _both(find: Finder, key: tuple[Any, ...], scores: Mapping[tuple[Any, ...], f
     side = all(score > 1.25 * scores[key] for score in signs)
     if not _second_needed(find, axes, second, unit, second_minus):
         return
-    words = f"{axes} axes: they miss the positions by {100.0 * miss:.2g} % of the speed"
+    words = f"{axes} axes: they miss the positions by {figures(100.0 * miss)} % of the speed"
     if rivals:
-        words += f", read otherwise by {100.0 * min(rivals):.2g} %"
+        words += f", read otherwise by {figures(100.0 * min(rivals))} %"
     own, more = find.unit_of(first, "m/s", unit)
     other, _ = find.unit_of(second, "m/s", unit)
     ways = {"ship": (("forward", "aft"), ("starboard", "port")), "earth": (("north", "south"), ("east", "west"))}[axes]
@@ -176,7 +177,7 @@ def ground_speed(find: Finder, among: Sequence[int]) -> None:
             "sog",
             speed[0],
             size,
-            (f"it is the speed along the track within {100.0 * miss:.2g} %, in {speed[1]}{more}",),
+            (f"it is the speed along the track within {figures(100.0 * miss)} %, in {speed[1]}{more}",),
         )
     )
     off = float(np.median(votes[best]))
@@ -235,15 +236,15 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
     if of_log:
         words += "; its name says that it is of a log, which measures the speed ahead through the water"
     if off:
-        more = f"{100.0 * abs(factor - 1.0):.2g} % {'more' if factor > 1.0 else 'less'}"
+        more = f"{figures(100.0 * abs(factor - 1.0))} % {'more' if factor > 1.0 else 'less'}"
         words += f"; it says {more} than the positions throughout: is it off by a factor?"
     if along:
-        said = f"it is the speed along the track within {100.0 * miss:.2g} %, in {unit}{words}"
+        said = f"it is the speed along the track within {figures(100.0 * miss)} %, in {unit}{words}"
         find.add(Guess("sog", column, own, (said, "its direction is that of the positions"), confidence))
         return
     own["positive"] = "aft" if minus else "forward"
     find.axes = "ship"
-    said = f"it is the speed ahead within {100.0 * miss:.2g} %, in {unit}{words}"
+    said = f"it is the speed ahead within {figures(100.0 * miss)} %, in {unit}{words}"
     find.add(Guess("u", column, own, (said,), confidence))
 
 

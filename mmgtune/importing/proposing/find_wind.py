@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ...phrases import figures
 from .finder import Finder
 from .guess import ASKED, LIKELY, MARK, Guess
 from .winds import CLOSES, candidates, steadiness, triangles
@@ -25,7 +26,7 @@ def wind(find: Finder) -> None:
     full = {key: float(np.median(many)) for key, many in votes.items() if len(many) >= 0.6 * len(find.looks)}
     best = min(full, key=lambda one: full[one], default=None)
     if best is not None and full[best] < CLOSES:
-        words = f"true wind, heading and motion make the apparent wind within {100.0 * full[best]:.2g} %"
+        words = f"true wind, heading and motion make the apparent wind within {figures(100.0 * full[best])} %"
         for wind, tail in zip(best, ("", "_app"), strict=True):
             find.add(Guess(f"wind_speed{tail}", wind.speed, {"unit": wind.unit}, (words,)))
             keys = {"unit": "deg" if wind.degrees else "rad", "direction": wind.points}
@@ -67,8 +68,8 @@ def _named_wind(find: Finder, tail: str) -> None:
     if not tail and best[0] == "apparent" and min(others, default=1.0) > 2.0 * found[best]:
         kind = "apparent"
         words.append(
-            f"apparent: the true wind it makes is steady within {100.0 * found[best]:.2g} %, "
-            f"read as true within {100.0 * min(others):.2g} %"
+            f"apparent: the true wind it makes is steady within {figures(100.0 * found[best])} %, "
+            f"read as true within {figures(100.0 * min(others))} %"
         )
     points = f'{MARK} "from" or "to": does it say where the wind comes from, or where it goes?'
     senses = {way: found.get((kind, way), 1.0) for way in ("from", "to")}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import FloatArray, runs_of_true
+from ...phrases import figures
 from ...physics.frame import to_earth
 from ..gaps import bridged
 from ..kinematics import halfway, middle
@@ -179,7 +180,7 @@ def jump_findings(trial: Trial, where: str) -> list[Finding]:
             "warning",
             f"the position jumps {times}, by {'' if len(found) == 1 else 'up to '}{size:.3g} m",
             f"{where}, columns 'x' and 'y', row {row}",
-            f"'u', 'v' and 'psi' make {went:.2g} m there",
+            f"'u', 'v' and 'psi' make {figures(went)} m there",
             "mark the positions that are wrong as NaN, or cut the trial there",
         ),
     ]
