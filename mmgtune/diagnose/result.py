@@ -35,7 +35,8 @@ class Diagnosis(Answer):
     ended     largest value that the log of a channel shows, of those whose sensor is at the end of its range, "u" [m/s]
               or "r" [rad/s]; what it shows there is left out
     misread   logs that are off in a few runs, and are left out: by channel and run how many times the motion they show,
-              None where it is no factor; under "delta" runs whose rudder angle has the other sign and was put right
+              None where it is no factor; under "delta" runs whose rudder angle has the other sign and was put right,
+              under "position" those whose positions are off
     contradicted what the logs say against each other, or what no model of the ship has, in a sentence; told first where
               the answer is unexplained
     swell     that the ship swings in waves, and that nothing is left beside that; "" where it is not so

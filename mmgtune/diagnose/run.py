@@ -45,8 +45,8 @@ from .bench.workbench import Workbench, make_workbench
 from .causes.belief import TOLD
 from .causes.contributions import removed_by, set_aside
 from .evidence.leftover import NOTICED, SWELLS, beside_swell, leftover, motions_of
-from .evidence.misread import RUDDER, LeftOut, both, is_of_few, without
-from .evidence.turned_rudder import turned_in, with_rudders_turned
+from .evidence.misread import LeftOut, both, is_of_few, without
+from .evidence.odd_runs import put_right
 from .held_out.together import Together
 from .held_out.unseen import Unseen
 from .result import Diagnosis
@@ -99,10 +99,9 @@ def diagnose(
     with journalled(folder, identity, hooks.stop, resume=resume):
         began = time.perf_counter()
         checked = check_trials(trials.trials, profile.L_pp) if choice is None else {}
-        turned = turned_in(profile, trials.trials, found_in(checked, RUDDER_SIGN))
-        if turned:
-            right = {id: with_rudders_turned(trial) for id, trial in trials.trials.items() if id in turned}
-            trials = replace(trials, trials={**trials.trials, **right})
+        odd = (found_in(checked, code) for code in (RUDDER_SIGN, CONTRADICTED))
+        right, misread = put_right(profile, trials.trials, *odd)
+        trials = replace(trials, trials=right) if misread else trials
         result = _looked_at(profile, trials, checked, choice, options, hooks, provenance)
         if result.gain.missed and not (options.keep_test or choice or result.is_beyond_all or hooks.stop()):
             hooks.on_phase("looking at all trials together")
@@ -111,8 +110,7 @@ def diagnose(
                 result = _settled(result, of_all)
         elif choice is None and result.verdict in ("unexplained", "not-separable") and not hooks.stop():
             result = _in_windows(profile, trials, checked, options, hooks, provenance, result)
-        if turned:
-            result = replace(result, misread=both({RUDDER: dict.fromkeys(turned, -1.0)}, result.misread))
+        result = replace(result, misread=both(misread, result.misread))
         return replace(result, wall_s=time.perf_counter() - began)
 
 

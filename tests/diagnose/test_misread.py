@@ -8,7 +8,7 @@ import pytest
 from mmgtune import DiagnoseOptions, diagnose, load_trials
 from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose.evidence.misread import LeftOut, both, in_words, is_of_few, misread_in, slow, without
-from mmgtune.diagnose.evidence.turned_rudder import turned_in, with_rudders_turned
+from mmgtune.diagnose.evidence.odd_runs import off_track_in, put_right, turned_in, with_rudders_turned
 from mmgtune.diagnose.folder import write_diagnosis
 from mmgtune.effects import find_effect
 from mmgtune.motions import simulate_trials
@@ -214,6 +214,55 @@ def test_all_rudders_are_turned_and_nothing_else():
     for name, values in trial.columns.items():
         sign = -1.0 if name.startswith("delta") else 1.0
         assert np.array_equal(turned.columns[name], sign * values, equal_nan=True)
+
+
+def in_feet(trial):
+    """Positions in another unit."""
+    return replace(trial, x=3.28 * trial.x, y=3.28 * trial.y)
+
+
+def adrift(trial):
+    """Positions that leave the way, by no factor."""
+    bent = 40.0 * np.sin(0.05 * trial.t) * np.arange(trial.n_samples) / 20.0
+    return replace(trial, x=trial.x + bent, y=trial.y - bent[::-1])
+
+
+@pytest.mark.parametrize(
+    ("change", "runs", "told"),
+    [
+        (in_feet, [2], {2: 3.28}),
+        (in_feet, [2, 4], {2: 3.28, 4: 3.28}),
+        (in_feet, [0, 2, 4], {}),  # which are right?
+        (adrift, [1], {1: None}),
+        (lambda trial: replace(trial, x=1.01 * trial.x), [1], {}),  # hardly
+        (lambda trial: replace(trial, v_m=-trial.v_m), [1], {}),  # the log of the sway velocity it is
+        (lambda trial: replace(in_feet(trial), u=3.28 * trial.u), [1], {}),  # positions are not alone
+    ],
+    ids=["one", "two", "most", "no factor", "little", "another log", "two logs"],
+)
+def test_positions_that_alone_are_far_off_in_single_runs_are_told(change, runs, told):
+    profile, trials = sailed_with([])
+    ids = list(trials)
+    made = {id: change(trial) if k in runs else trial for k, (id, trial) in enumerate(trials.items())}
+    found = off_track_in(profile, made, [ids[k] for k in runs])
+    assert found == {ids[k]: None if by is None else pytest.approx(by, rel=0.01) for k, by in told.items()}
+    assert off_track_in(profile, made, []) == {}
+
+
+def test_what_is_put_right_is_what_is_told():
+    profile, trials = sailed_with([1])
+    ids = list(trials)
+    made = {**trials, ids[3]: in_feet(trials[ids[3]])}
+    right, misread = put_right(profile, made, [ids[1]], [ids[3]])
+    assert misread == {"delta": {ids[1]: -1.0}, "position": {ids[3]: pytest.approx(3.28, rel=0.01)}}
+    assert np.array_equal(right[ids[1]].delta, -made[ids[1]].delta)
+    assert np.isnan(right[ids[3]].x[1:]).all()
+    assert np.isnan(right[ids[3]].y[1:]).all()
+    assert right[ids[0]] is made[ids[0]]
+    words = in_words(misread)
+    assert "; the log of the position shows 3.2" in words
+    assert words.endswith(f" times the motion that all else shows in {ids[3]}")
+    assert put_right(profile, made, [], []) == (made, {})
 
 
 @pytest.mark.parametrize("offset", [0.0, 2.0 * DEG])

@@ -5,8 +5,7 @@ forces         residual forces by inverse dynamics
 short_horizon  residuals of simulations restarted every window
 explained      the share of a residual that one variable alone explains, and the share that is noise
 leftover       what is left beyond noise, and whether it looks like something that happened
-misread        logs that are off in single runs; turned_rudder: runs whose rudder angle has the other sign;
-               logged: channels in words
+misread        logs that are off in single runs; odd_runs: rudders and positions that are; logged: channels in words
 whereabouts    where an error lives that nothing explains; gathering: all of it for the report
 """
 

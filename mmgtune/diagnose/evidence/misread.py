@@ -31,8 +31,8 @@ STANDS = 0.1
 NAMED = 3
 """Runs up to which each is named."""
 
-RUDDER = "delta"
-"""What stands for the rudders of a run where their log is off."""
+RUDDER, POSITION = "delta", "position"
+"""What stands for the rudders of a run where their log is off, and for its positions."""
 
 OF_ALL_ELSE = "times the motion that all else shows"
 
@@ -83,7 +83,7 @@ def without(trial: Trial, misread: Misread) -> Trial:
 
 def both(one: Misread, other: Misread) -> Misread:
     """What one of two says is misread, and the other besides."""
-    names = [name for name in (RUDDER, *MISREADABLE) if name in one or name in other]
+    names = [name for name in (RUDDER, POSITION, *MISREADABLE) if name in one or name in other]
     return {name: {**one.get(name, {}), **other.get(name, {})} for name in names}
 
 
@@ -138,8 +138,9 @@ def _by_factor(measured: FloatArray, off: FloatArray) -> tuple[float | None, Flo
 
 def in_words(misread: Misread) -> str:
     """What logs show in single runs as a sentence without its full stop; "" where none is off."""
+    logs = {**LOGGED, POSITION: POSITION}
     return "; ".join(
-        _of_rudders(list(runs)) if name == RUDDER else _of_channel(LOGGED[name], runs) for name, runs in misread.items()
+        _of_rudders(list(runs)) if name == RUDDER else _of_channel(logs[name], runs) for name, runs in misread.items()
     )
 
 
