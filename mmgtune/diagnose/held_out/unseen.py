@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ...fitting.box import group_of
 from ...fitting.comparison import TrialComparison, compare
+from ...fitting.journal import side_by_side
 from ...fitting.problem import FitProblem
 from ...objective import Objective, cases_of, make_objective
 from ...trial import Coverage, Trial
 from ..bench.runs import labels_of
 from ..bench.workbench import Point, Workbench, make_workbench
+from ..searching.base_fit import unnoticed
 from .elsewhere import estimated_there, first_part
 
 
@@ -41,8 +44,9 @@ class Unseen:
         for run in runs:
             if run not in self.without:
                 self.without[run] = _Without.of(self.bench, run)
-            refitted = [self.without[run].refitted(point) for point in points]
-            yield refitted, [trial for trial in self.bench.trials if trial.run == run]
+        refitted = side_by_side([partial(self.without[run].refitted, points) for run in runs])
+        for run, found in zip(runs, refitted, strict=True):
+            yield found, [trial for trial in self.bench.trials if trial.run == run]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,14 +71,22 @@ class _Without:
         rest.know(replace(bench.noise, cases=rest.problem.cases))
         return cls(rest, keep)
 
-    def refitted(self, point: Point) -> Point:
-        """A point refitted on the trials that are left, without values of runs that are not among them."""
+    def refitted(self, points: Sequence[Point]) -> list[Point]:
+        """Points refitted on the trials that are left, without values of runs that are not among them."""
+        return [self._refitted(point) for point in points]
+
+    def _refitted(self, point: Point) -> Point:
         if id(point) not in self.known:
             labels = frozenset[str]().union(*self.rest.problem.groups)
             own = [i for i, name in enumerate(point.names) if not group_of(name) or group_of(name) in labels]
             names, start = [point.names[i] for i in own], point.unit[own][:, None]
             refitted = self.rest.refit(
-                names, start, point.offsets[self.keep], integrator=point.integrator, spreads=point.spreads
+                names,
+                start,
+                point.offsets[self.keep],
+                integrator=point.integrator,
+                tolerance=unnoticed(self.rest, point.chi2),
+                spreads=point.spreads,
             )
             self.known[id(point)] = point, refitted
         return self.known[id(point)][1]
