@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..physics.frame import to_earth, to_ship
+from ..physics.frame import to_earth
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
 from .signs import signed
@@ -38,9 +38,9 @@ def _moved(state: State, north: Lanes, east: Lanes) -> State:
 
 
 def _of_then(state: State, du: Lanes, dv: Lanes, dr: Lanes, T: Lanes) -> State:
-    """The velocity over ground of T [s] ago, in the axes of now, of a motion like that of ``_way``."""
-    then = to_earth(state.psi - T * (state.r - 0.5 * T * dr), state.u - T * du, state.v_m - T * dv)
-    u, v_m = to_ship(state.psi, *then)
+    """The velocity over ground of T [s] ago, in the axes of now, of a motion like that of ``_way``: the ship has turned
+    since."""
+    u, v_m = to_earth(-T * (state.r - 0.5 * T * dr), state.u - T * du, state.v_m - T * dv)
     return State(x=state.x, y=state.y, psi=state.psi, u=u, v_m=v_m, r=state.r)
 
 
