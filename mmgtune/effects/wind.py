@@ -1,16 +1,19 @@
 """Wind on the part of the ship above the water."""
 
 from collections import namedtuple
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from ..components import AT_LEAST_0
+from ..phrases import capital
 from ..physics.elementary import cos, sin, where
 from ..physics.frame import to_ship
 from ..physics.quantities import HARMONICS, Force, Forces, State, Surroundings
 from ..physics.wind import wind_shape
 from .effect import ForceEffect, Parameter, factor_on_measured
+from .signs import signed
 
 RHO_AIR = 1.225
 """Density of air [kg/m^3]."""
@@ -19,7 +22,10 @@ RHO_AIR = 1.225
 SHOWN = ("A_T", "A_L", *HARMONICS)
 """What the ship shows the wind, out of her section above_water."""
 
-Wind = namedtuple("Wind", ("speed", "direction", "measured", "ahead", "across", "turning", "arm", *SHOWN))  # type: ignore[misc]
+OWN = ("speed", "direction", "measured", "turned", "ahead", "across", "turning", "arm")
+"""Parameters of the effect itself."""
+
+Wind = namedtuple("Wind", (*OWN, *SHOWN))  # type: ignore[misc]
 
 
 def _factor(what: str) -> Parameter:
@@ -35,12 +41,13 @@ def _factor(what: str) -> Parameter:
 def wind(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: Any) -> Force:
     """Force of the apparent wind: Fujiwara, Ueno & Nimura 1998.
 
-    Where the trial has measured wind it counts, times ``measured``; else the steady wind.  No wind at all is no force:
-    a model without this effect has the drag of still air in its resistance.
+    Where the trial has measured wind it counts, times ``measured`` and turned back by ``turned``; else the steady wind.
+    No wind at all is no force: a model without this effect has the drag of still air in its resistance.
     """
     by_log = around.wind_known * e.measured > 0.0
-    north = where(by_log, around.wind_north * e.measured, -e.speed * cos(e.direction))
-    east = where(by_log, around.wind_east * e.measured, -e.speed * sin(e.direction))
+    shown_north, shown_east = to_ship(e.turned, around.wind_north, around.wind_east)
+    north = where(by_log, shown_north * e.measured, -e.speed * cos(e.direction))
+    east = where(by_log, shown_east * e.measured, -e.speed * sin(e.direction))
     blows = where(by_log, 1.0, where(e.speed > 0.0, 1.0, 0.0))
     ahead, starboard = to_ship(state.psi, north, east)
     u_A = ahead - state.u
@@ -51,6 +58,18 @@ def wind(state: State, around: Surroundings, found: Forces, components: Any, p: 
     q = blows * 0.5 * RHO_AIR * U_A2
     X, Y = e.ahead * q * e.A_T * C_X, e.across * q * e.A_L * C_Y
     return Force(X=X, Y=Y, N=(e.across * e.turning * q * e.A_L * C_N + e.arm * Y) * p.ship.L_pp)
+
+
+def _sentence(v: Mapping[str, str]) -> str:
+    told = []
+    if "speed" in v:
+        told.append(f"a wind of {v['speed']} blew from {v['direction']}")
+    if "measured" in v:
+        told.append(f"the wind measured in the trials acts on the ship, with {v['measured']} times its measured speed")
+    if "turned" in v:
+        off = signed(v["turned"], "clockwise", "anticlockwise")
+        told.append(f"the wind is logged {off} of where it comes from")
+    return capital("; ".join(told))
 
 
 EFFECT = ForceEffect(
@@ -78,6 +97,15 @@ EFFECT = ForceEffect(
             typical=lambda _: 0.5 * np.pi,
         ),
         "measured": factor_on_measured("the wind", 2.0, 1.0, "from no wind to twice the measured"),
+        "turned": Parameter(
+            "how far the logged direction of the wind is clockwise of where it comes from",
+            "rad",
+            low=-np.pi,
+            high=np.pi,
+            bounds=lambda _: (-np.pi / 3.0, np.pi / 3.0),
+            typical=lambda _: np.pi / 18.0,
+            bounds_source="a vane that is 60 deg off",
+        ),
         "ahead": _factor("force ahead"),
         "across": _factor("force across"),
         "turning": Parameter(
@@ -96,15 +124,11 @@ EFFECT = ForceEffect(
     },
     form={"ahead": 0.2, "across": 0.2, "turning": 0.5, "arm": 0.05},
     borrowed={name: f"above_water.{name}" for name in SHOWN},
-    variants=(("speed", "direction"), ("measured",)),
+    variants=(("speed", "direction"), ("measured",), ("turned",), ("measured", "turned")),
     akin=("wave-drift",),
-    sentence=lambda v: (
-        f"The wind measured in the trials acts on the ship, with {v['measured']} times its measured speed"
-        if "measured" in v
-        else f"A wind of {v['speed']} blew from {v['direction']}"
-    ),
+    sentence=_sentence,
     needs=("above_water.A_T",),
-    of_measured={"measured": "wind"},
+    of_measured={"measured": "wind", "turned": "wind"},
     stand_in=("speed",),
     varies=("speed", "direction"),
 )

@@ -96,6 +96,11 @@ def test_wind(added, suzaku, come_from):
     flow = blowing(-9.0 * math.cos(come_from), -9.0 * math.sin(come_from))
     measured, _ = added("wind", {"speed": 3.0, "direction": 0.0, "measured": 1.0, **shape}, air=flow)
     np.testing.assert_allclose(measured, steady, rtol=1e-9)
+    # A vane that shows it further clockwise.
+    a = 0.4
+    logged = blowing(-9.0 * math.cos(come_from + a), -9.0 * math.sin(come_from + a))
+    turned, _ = added("wind", {"measured": 1.0, "turned": a, **shape}, air=logged)
+    np.testing.assert_allclose(turned, steady, rtol=1e-9)
     # Wind from starboard pushes to port.
     from_starboard, _ = added("wind", {"speed": 20.0, "direction": MOVING.psi + 1.5, "measured": 1.0, **shape})
     assert from_starboard[1] < 0.0

@@ -16,6 +16,7 @@ from ...backends import Cases
 from ...effects import Effect
 from ...effects.wind import EFFECT
 from ...model import Model
+from ...physics.frame import to_ship
 from ...physics.quantities import HARMONICS, Surroundings
 
 ALONG, ACROSS = 0.12, 0.1
@@ -61,19 +62,22 @@ def other_winds(
     shapes = _shapes(model, theta, n_draws, rng)
     north, east, known = (Surroundings._fields.index(f"wind_{name}") for name in ("north", "east", "known"))
     for case in range(len(cases)):
-        speed, direction, measured = (
-            float(each[model.rows[f"{EFFECT.kind}.{name}"], case, 0]) for name in ("speed", "direction", "measured")
+        speed, direction, measured, turned = (
+            float(each[model.rows[f"{EFFECT.kind}.{name}"], case, 0])
+            for name in ("speed", "direction", "measured", "turned")
         )
         factor = measured if measured > 0.0 else 1.0
         by_log = (cases.around[case, :, known] * measured > 0.0)[:, None]
         steady = -speed * np.array([np.cos(direction), np.sin(direction)])
-        air = np.where(by_log, factor * cases.around[case][:, [north, east]], steady)
+        logged = np.column_stack(to_ship(turned, *cases.around[case][:, [north, east]].T))
+        air = np.where(by_log, factor * logged, steady)
         if not np.any(air):
             continue
         blown = (air + _gusts(cases.t[case], air, n_draws, rng)) / factor
         around[case, :, :, north], around[case, :, :, east] = blown[..., 0], blown[..., 1]
         around[case, :, :, known] = 1.0
         each[model.rows[f"{EFFECT.kind}.measured"], case] = factor
+        each[model.rows[f"{EFFECT.kind}.turned"], case] = 0.0  # turned back already
         for row, values in shapes.items():
             each[row, case, 1:] = values
     return around, each
