@@ -110,7 +110,8 @@ def diagnose(
                 result = _settled(result, of_all)
         elif choice is None and result.verdict in ("unexplained", "not-separable") and not hooks.stop():
             result = _in_windows(profile, trials, checked, options, hooks, provenance, result)
-        result = replace(result, misread=both(misread, result.misread))
+        if misread:
+            result = replace(result, misread=both(misread, result.misread))
         return replace(result, wall_s=time.perf_counter() - began)
 
 
