@@ -12,7 +12,7 @@ import pytest
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, diagnose
-from mmgtune.diagnose.answering import saying
+from mmgtune.diagnose.answering import judging, saying
 from mmgtune.diagnose.answering.judging import Judge, _not_refuted, _of_effects, _telling_as_much
 from mmgtune.diagnose.bench.hypotheses import Hypothesis, known_causes
 from mmgtune.diagnose.bench.noise import ChannelNoise
@@ -704,13 +704,33 @@ def test_what_is_little_beside_noise_may_be_chance(one, chance):
     assert one.is_chance == chance
 
 
+def test_where_a_cause_alone_is_not_believed_none_is_asked_for(monkeypatch):
+    """Without a wind the inertia was what no ship's is, of a rudder logged in whole degrees: "an error with 0 %"."""
+    wind = SimpleNamespace(tag="wind")
+    found = SimpleNamespace(causes=[wind], base="base")
+    monkeypatch.setattr(judging, "unlike_without", lambda *_: "k_zz 40 % above")
+    monkeypatch.setattr(judging, "with_only", lambda bench, found, causes: SimpleNamespace(causes=causes))
+    asked = [least.causes for least, _ in Judge._least(SimpleNamespace(bench=None), found)]
+    assert asked == [[wind], []]
+    monkeypatch.setattr(judging, "unlike_without", lambda *_: "")
+    assert [least.causes for least, _ in Judge._least(SimpleNamespace(bench=None), found)] == [[]]
+
+
 @pytest.mark.parametrize(
-    ("chance", "unclear", "explained", "nothing"),
-    [(True, "why", 0.5, True), (False, "why", 0.05, True), (False, "why", 0.5, False), (False, "", 0.05, False)],
+    ("chance", "unclear", "fails", "explained", "nothing"),
+    [
+        (True, "why", True, 0.5, True),
+        (False, "why", True, 0.05, True),
+        (False, "why", True, 0.5, False),
+        (False, "", False, 0.05, False),
+        (False, "", True, 0.05, True),  # not told by test trials, whose inputs are as coarse
+        (False, "", True, 0.5, False),
+    ],
 )
-def test_what_is_not_believed_and_removes_nothing_leaves_what_there_was(chance, unclear, explained, nothing):
+def test_what_is_not_believed_and_removes_nothing_leaves_what_there_was(chance, unclear, fails, explained, nothing):
     """Coarse inputs excused all that was left, and "something is wrong: an error with 0 % of the noise is left"."""
-    one = belief_with(causes=[SimpleNamespace()], is_chance=chance, unclear=unclear, explained_share=explained)
+    found = {"causes": [SimpleNamespace()], "is_chance": chance, "unclear": unclear, "fails": fails}
+    one = belief_with(**found, explained_share=explained)
     assert one.is_next_to_nothing == nothing
 
 

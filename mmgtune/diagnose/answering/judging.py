@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -106,10 +106,11 @@ class Judge:
             if doubted is not None:
                 result = replace(result, leading=Leading.of(result, other))
         if result.is_next_to_nothing and self._may_be_noise(result) and not self.hooks.stop():
-            least, brought = self._least(found)
-            other = self._judged(least, brought)
-            held = other.names_causes if least.causes else other.verdict == "none"
-            result, found = (other, least) if held else (result, found)
+            for least, brought in self._least(found):
+                other = self._judged(least, brought)
+                if other.names_causes if least.causes else other.verdict == "none":
+                    result, found = other, least
+                    break
         if result.verdict == "unexplained" and not result.misses_test:
             result = replace(result, whereabouts=error_of(self.bench, found, self.before, result.leftover))
         elif result.verdict != "interrupted":
@@ -125,14 +126,15 @@ class Judge:
         shapeless = not self.before.structured and result.chi2[0] < 1.0 + NOTICED
         return shapeless or not self.before.noticed
 
-    def _least(self, found: Found) -> tuple[Found, list[Contribution]]:
-        """Of causes beside which the re-tuned model leaves noise alone none, or the first without which mass or inertia
-        would be what no ship's is, and with which alone they are not; what it brings."""
+    def _least(self, found: Found) -> Iterator[tuple[Found, list[Contribution]]]:
+        """Of causes beside which the re-tuned model leaves noise alone the first without which mass or inertia would be
+        what no ship's is, and with which alone they are not; then none.  And what they bring."""
         for cause in found.causes if unlike_without(self.bench, found, found.base) else []:
             alone = with_only(self.bench, found, [cause])
             if unlike := unlike_without(self.bench, alone, found.base):
-                return alone, [Contribution(1.0, unlike_any=unlike)]
-        return with_only(self.bench, found, []), []
+                yield alone, [Contribution(1.0, unlike_any=unlike)]
+                break
+        yield with_only(self.bench, found, []), []
 
     def _without_doubtful(
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]

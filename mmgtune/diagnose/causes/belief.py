@@ -222,7 +222,8 @@ class Belief:
     @property
     def is_next_to_nothing(self) -> bool:
         """Whether causes that are not believed may be chance, or remove nothing worth speaking of."""
-        return self.is_chance or bool(self.unclear and not self.tells_a_part)
+        doubtful = bool(self.unclear) or self.fails
+        return self.is_chance or (doubtful and bool(self.causes) and self.explained_share < A_TENTH)
 
     @property
     def _told_by_one_log(self) -> bool:
