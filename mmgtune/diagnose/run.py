@@ -57,6 +57,9 @@ from .voyages.difference import LEG_NAMES, Difference
 from .voyages.differences import differences
 from .voyages.windows import Choice, looked_at, with_hull_held
 
+LONG = 8.0
+"""Windows in a run from which it is looked at in windows first, where it is the only one."""
+
 Checked = Mapping[str, Sequence[Finding]]
 """What ``check_trials`` found, by trial."""
 
@@ -102,17 +105,27 @@ def diagnose(
         odd = (found_in(checked, code) for code in (RUDDER_SIGN, CONTRADICTED))
         right, misread = put_right(profile, trials.trials, *odd)
         trials = replace(trials, trials=right) if misread else trials
-        result = _looked_at(profile, trials, checked, choice, options, hooks, provenance)
+        alone = choice is None and _is_one_long_run(trials, options)
+        windows = _windows(profile, trials, checked, options, hooks, provenance) if alone else None
+        told = windows if windows and (windows.names_causes or windows.interrupted) else None
+        result = told or _looked_at(profile, trials, checked, choice, options, hooks, provenance)
         if result.gain.missed and not (options.keep_test or choice or result.is_beyond_all or hooks.stop()):
             hooks.on_phase("looking at all trials together")
             with suppress(ProfileError):  # where the model runs away on the others there is nothing more to look at
                 of_all = _looked_at(profile, replace(trials, test=()), checked, None, options, hooks, provenance)
                 result = _settled(result, of_all)
-        elif choice is None and result.verdict in ("unexplained", "not-separable") and not hooks.stop():
+        elif not (choice or alone or hooks.stop()) and result.verdict in ("unexplained", "not-separable"):
             result = _in_windows(profile, trials, checked, options, hooks, provenance, result)
         if misread:
             result = replace(result, misread=both(misread, result.misread))
         return replace(result, wall_s=time.perf_counter() - began)
+
+
+def _is_one_long_run(trials: TrialSet, options: DiagnoseOptions) -> bool:
+    """Whether all there is is one run, so long that what is small adds up in it, and no other run tells it apart."""
+    runs = {trial.run for trial in trials.trials.values()}
+    longest = max(trial.duration for trial in trials.trials.values())
+    return options.restart is None and len(runs) == 1 and longest >= LONG * WINDOW
 
 
 def _in_windows(
@@ -128,17 +141,32 @@ def _in_windows(
     windows name causes that these do not, or fewer rivals of them."""
     if not leaves_much_open(list(trials.trials.values()), whole.leftover, options):
         return whole
+    windows = _windows(profile, trials, checked, options, hooks, provenance)
+    if windows is None:
+        return whole
+    if windows.names_causes and (not whole.names_causes or _rivals(windows) < _rivals(whole)):
+        return windows
+    return replace(whole, interrupted=windows.interrupted)
+
+
+def _windows(
+    profile: ShipProfile,
+    trials: TrialSet,
+    checked: Checked,
+    options: DiagnoseOptions,
+    hooks: Hooks,
+    provenance: dict[str, Any],
+) -> Diagnosis | None:
+    """The answer of windows, which says so; None where the model runs away in one."""
     hooks.on_phase(f"looking at windows of {WINDOW:g} s")
     with suppress(ProfileError):
         windows = _looked_at(profile, trials, checked, None, replace(options, restart=WINDOW), hooks, provenance)
-        if windows.names_causes and (not whole.names_causes or _rivals(windows) < _rivals(whole)):
-            said = (
-                f"Told by windows of {WINDOW:g} s, each with a beginning of its own: over whole runs, what the inputs "
-                "did between samples of their log hides it."
-            )
-            return replace(windows, warnings=(said, *windows.warnings))
-        return replace(whole, interrupted=windows.interrupted)
-    return whole
+        said = (
+            f"Told by windows of {WINDOW:g} s, each with a beginning of its own: over whole runs, what the inputs did "
+            "between samples of their log hides it."
+        )
+        return replace(windows, warnings=(said, *windows.warnings))
+    return None
 
 
 def _rivals(result: Diagnosis) -> int:

@@ -1,6 +1,6 @@
 """Trials kept for testing that an answer misses are looked at with the others."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from types import SimpleNamespace
 
@@ -130,6 +130,52 @@ def test_windows_are_looked_at_where_whole_runs_leave_much_open(whole, windows, 
     result = diagnose(load_profile("suzaku"), load_trials("suzaku"))
     assert result.of == told
     assert bool(result.warnings) == (told == "windows")
+
+
+@pytest.mark.parametrize(
+    ("windows", "duration", "looked_at"),
+    [
+        ("found", 2600.0, ["windows"]),
+        ("interrupted", 2600.0, ["windows"]),
+        ("none", 2600.0, ["windows", "whole"]),
+        ("unexplained", 2600.0, ["windows", "whole"]),
+        ("found", 600.0, ["whole"]),
+    ],
+)
+def test_one_long_run_is_looked_at_in_windows_first(windows, duration, looked_at, monkeypatch):
+    """A current and a zero of the rudder in a log of 43 minutes were "something is wrong that this program does not
+    know", after 207 s."""
+    one = load_trials("suzaku").trials["turn_p35"]
+    t = np.linspace(0.0, duration, one.n_samples)
+    seen = []
+
+    def look(profile, trials, checked, choice, options, *rest):
+        seen.append("whole" if options.restart is None else "windows")
+        verdict = "none" if options.restart is None else windows
+        return Verdict(verdict, options.restart, interrupted=verdict == "interrupted")
+
+    monkeypatch.setattr(import_module("mmgtune.diagnose.run"), "_looked_at", look)
+    result = diagnose(load_profile("suzaku"), [replace(one, t=t)])
+    assert seen == looked_at
+    assert (result.restart is None) == (seen[-1] == "whole")
+    assert bool(result.warnings) == (seen == ["windows"])
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is asked of an answer before others are looked for."""
+
+    verdict: str
+    restart: float | None
+    interrupted: bool = False
+    gain: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(missed=False))
+    is_beyond_all: bool = False
+    warnings: tuple[str, ...] = ()
+    wall_s: float = 0.0
+
+    @property
+    def names_causes(self):
+        return self.verdict in ("found", "not-separable")
 
 
 def test_without_a_cause_motion_may_run_away():
