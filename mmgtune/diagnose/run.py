@@ -82,6 +82,9 @@ def diagnose(
     together, unless the options keep them or a sum of several terms is not believed already.  Nothing is read but the
     profile, the columns and the split.
 
+    What single runs log otherwise than all others is put right first, or left out, and said.  Of one long run windows
+    are looked at first.
+
     Of voyages, logs of hours, a bounded number of windows is looked at, and what differs from one to the next is told.
 
     profile, trials  objects, paths or bundled names

@@ -105,26 +105,21 @@ class Refitting:
         """The refit of a hypothesis, where it ended with what it has more than another at the end of its range: from
         there the way on may be flat, as for the lag of a gear whose rate is limited.  Begun again from the other."""
         asked, refitter = score.hypothesis, self.refitter
+        own = dict(zip(end.names, end.unit, strict=True))
         for fewer, there in fitted:
+            if not asked.holds(fewer.hypothesis) or fewer.hypothesis.by != asked.by:
+                continue
             known = dict(zip(there.names, there.unit, strict=True))
             more = [name for name in asked.names if name not in known]
-            if not (asked.holds(fewer.hypothesis) and fewer.hypothesis.by == asked.by):
+            null = refitter.bench.null(more)
+            away = inwards(null)
+            if not more or not away.all() or any(own[name] != z for name, z in zip(more, null, strict=True)):
                 continue
-            null = dict(zip(more, refitter.bench.null(more), strict=True))
-            away = dict(zip(more, inwards(refitter.bench.null(more)), strict=True))
-            own = dict(zip(end.names, end.unit, strict=True))
-            if not all(away[name] and own[name] == null[name] for name in more):
-                continue
-            size = {name: away[name] * typical(refitter.bench, name) for name in more}
-            starts = [
-                [
-                    known[name] if name in known else np.clip(null[name] + by * size[name], 0.0, 1.0)
-                    for name in end.names
-                ]
-                for by in FURTHER
-            ]
+            step = away * np.array([typical(refitter.bench, name) for name in more])
+            beside = [dict(zip(more, np.clip(null + by * step, 0.0, 1.0), strict=True)) for by in FURTHER]
+            starts = np.array([[{**known, **one}[name] for name in end.names] for one in beside]).T
             begun = replace(refitter.point, offsets=there.offsets)
-            end = min([end, *refitter.steps(begun, score, np.array(starts).T, MOST_STEPS)], key=lambda one: one.chi2)
+            end = min([end, *refitter.steps(begun, score, starts, MOST_STEPS)], key=lambda one: one.chi2)
             refitter.known.ends[asked.names] = end
         return end
 
