@@ -233,6 +233,8 @@ def test_a_narrow_screen(visit):
 def test_search(visit):
     page = visit("index.html")
     page.focus(".md-search__input")
+    ready = "document.querySelector('.md-search-result__meta').textContent.includes('Type to start')"
+    page.wait_for_function(ready)  # the theme's own search fails where letters come before its index is there
     page.keyboard.type("gyro bias")
     page.wait_for_selector(".md-search-result__item a")
     assert "matching" in page.inner_text(".md-search-result__meta")
