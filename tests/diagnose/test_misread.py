@@ -221,6 +221,11 @@ def in_feet(trial):
     return replace(trial, x=3.28 * trial.x, y=3.28 * trial.y)
 
 
+def of_antenna(trial):
+    """Positions of a point 60 m aft of midship, which a turn shows much more of than a zigzag."""
+    return replace(trial, x=trial.x - 60.0 * np.cos(trial.psi), y=trial.y - 60.0 * np.sin(trial.psi))
+
+
 def adrift(trial):
     """Positions that leave the way, by no factor."""
     bent = 40.0 * np.sin(0.05 * trial.t) * np.arange(trial.n_samples) / 20.0
@@ -234,11 +239,12 @@ def adrift(trial):
         (in_feet, [2, 4], {2: 3.28, 4: 3.28}),
         (in_feet, [0, 2, 4], {}),  # which are right?
         (adrift, [1], {1: None}),
+        (of_antenna, [1], {}),
         (lambda trial: replace(trial, x=1.01 * trial.x), [1], {}),  # hardly
         (lambda trial: replace(trial, v_m=-trial.v_m), [1], {}),  # the log of the sway velocity it is
         (lambda trial: replace(in_feet(trial), u=3.28 * trial.u), [1], {}),  # positions are not alone
     ],
-    ids=["one", "two", "most", "no factor", "little", "another log", "two logs"],
+    ids=["one", "two", "most", "no factor", "an antenna", "little", "another log", "two logs"],
 )
 def test_positions_that_alone_are_far_off_in_single_runs_are_told(change, runs, told):
     profile, trials = sailed_with([])

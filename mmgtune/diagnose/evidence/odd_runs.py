@@ -13,7 +13,7 @@ from ...evaluation import TrialRecord, evaluate
 from ...inputs import INPUTS
 from ...profile import ShipProfile
 from ...trial import Trial
-from ...trial.kinematics import FITS, stretch_of
+from ...trial.kinematics import FITS, lever_of, stretch_of
 from ...trial.model import fields_of
 from .misread import POSITION, RUDDER, Misread, both, without
 
@@ -76,7 +76,10 @@ def off_track_in(
     found: dict[str, float | None] = {}
     for id in doubtful:
         times = errors[id] / np.maximum(usual, 1e-300)
-        if times[0] > FAR and (times[1:] < LIKE_OTHERS).all():
+        # Of an antenna far from midship turns show much more than zigzags do: that is one for all, and may be a cause.
+        lever = lever_of(trials[id].columns)
+        aboard = lever is not None and lever.misfit < FITS and hypot(lever.x, lever.y) < profile.L_pp
+        if times[0] > FAR and (times[1:] < LIKE_OTHERS).all() and not aboard:
             found[id] = _factor(trials[id])
     return found
 
