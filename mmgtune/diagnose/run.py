@@ -63,6 +63,9 @@ LONG = 8.0
 Checked = Mapping[str, Sequence[Finding]]
 """What ``check_trials`` found, by trial."""
 
+Look = Callable[[TrialSet, Choice | None, DiagnoseOptions], Diagnosis]
+"""The answer of trials, windows of voyages or None, and options."""
+
 
 @blas_on_one_thread
 def diagnose(
@@ -108,17 +111,20 @@ def diagnose(
         odd = (found_in(checked, code) for code in (RUDDER_SIGN, CONTRADICTED))
         right, misread = put_right(profile, trials.trials, *odd)
         trials = replace(trials, trials=right) if misread else trials
+
+        def look(trials: TrialSet, choice: Choice | None, options: DiagnoseOptions) -> Diagnosis:
+            return _looked_at(profile, trials, checked, choice, options, hooks, provenance)
+
         alone = choice is None and _is_one_long_run(trials, options)
-        windows = _windows(profile, trials, checked, options, hooks, provenance) if alone else None
+        windows = _windows(look, trials, options, hooks) if alone else None
         told = windows if windows and (windows.names_causes or windows.interrupted) else None
-        result = told or _looked_at(profile, trials, checked, choice, options, hooks, provenance)
+        result = told or look(trials, choice, options)
         if result.gain.missed and not (options.keep_test or choice or result.is_beyond_all or hooks.stop()):
             hooks.on_phase("looking at all trials together")
             with suppress(ProfileError):  # where the model runs away on the others there is nothing more to look at
-                of_all = _looked_at(profile, replace(trials, test=()), checked, None, options, hooks, provenance)
-                result = _settled(result, of_all)
+                result = _settled(result, look(replace(trials, test=()), None, options))
         elif not (choice or alone or hooks.stop()) and result.verdict in ("unexplained", "not-separable"):
-            result = _in_windows(profile, trials, checked, options, hooks, provenance, result)
+            result = _in_windows(look, trials, options, hooks, result)
         if misread:
             result = replace(result, misread=both(misread, result.misread))
         return replace(result, wall_s=time.perf_counter() - began)
@@ -131,20 +137,12 @@ def _is_one_long_run(trials: TrialSet, options: DiagnoseOptions) -> bool:
     return options.restart is None and len(runs) == 1 and longest >= LONG * WINDOW
 
 
-def _in_windows(
-    profile: ShipProfile,
-    trials: TrialSet,
-    checked: Checked,
-    options: DiagnoseOptions,
-    hooks: Hooks,
-    provenance: dict[str, Any],
-    whole: Diagnosis,
-) -> Diagnosis:
+def _in_windows(look: Look, trials: TrialSet, options: DiagnoseOptions, hooks: Hooks, whole: Diagnosis) -> Diagnosis:
     """The answer of whole runs, or that of windows of these, where inputs leave too much open over whole runs, and
     windows name causes that these do not, or fewer rivals of them."""
     if not leaves_much_open(list(trials.trials.values()), whole.leftover, options):
         return whole
-    windows = _windows(profile, trials, checked, options, hooks, provenance)
+    windows = _windows(look, trials, options, hooks)
     if windows is None:
         return whole
     if windows.names_causes and (not whole.names_causes or _rivals(windows) < _rivals(whole)):
@@ -152,18 +150,11 @@ def _in_windows(
     return replace(whole, interrupted=windows.interrupted)
 
 
-def _windows(
-    profile: ShipProfile,
-    trials: TrialSet,
-    checked: Checked,
-    options: DiagnoseOptions,
-    hooks: Hooks,
-    provenance: dict[str, Any],
-) -> Diagnosis | None:
+def _windows(look: Look, trials: TrialSet, options: DiagnoseOptions, hooks: Hooks) -> Diagnosis | None:
     """The answer of windows, which says so; None where the model runs away in one."""
     hooks.on_phase(f"looking at windows of {WINDOW:g} s")
     with suppress(ProfileError):
-        windows = _looked_at(profile, trials, checked, None, replace(options, restart=WINDOW), hooks, provenance)
+        windows = look(trials, None, replace(options, restart=WINDOW))
         said = (
             f"Told by windows of {WINDOW:g} s, each with a beginning of its own: over whole runs, what the inputs did "
             "between samples of their log hides it."

@@ -39,6 +39,16 @@ def _sentence(v: Mapping[str, str]) -> str:
     return f"A steady {pushes} acted on the ship, as of {thing}"
 
 
+def _force(way: str) -> Parameter:
+    return Parameter(
+        f"force {way}",
+        "N",
+        bounds=lambda ship: (-0.03 * ship.force, 0.03 * ship.force),
+        typical=lambda ship: 0.002 * ship.force,
+        bounds_source="about twice the resistance going straight",
+    )
+
+
 EFFECT = ForceEffect(
     kind="effects.steady-force",
     tag="steady-force",
@@ -47,20 +57,8 @@ EFFECT = ForceEffect(
     function=steady_force,
     cites=(),
     fields={
-        "ahead": Parameter(
-            "force ahead",
-            "N",
-            bounds=lambda ship: (-0.03 * ship.force, 0.03 * ship.force),
-            typical=lambda ship: 0.002 * ship.force,
-            bounds_source="about twice the resistance going straight",
-        ),
-        "side": Parameter(
-            "force to starboard",
-            "N",
-            bounds=lambda ship: (-0.03 * ship.force, 0.03 * ship.force),
-            typical=lambda ship: 0.002 * ship.force,
-            bounds_source="about twice the resistance going straight",
-        ),
+        "ahead": _force("ahead"),
+        "side": _force("to starboard"),
         "moment": Parameter(
             "moment about midship, bow to starboard",
             "N m",

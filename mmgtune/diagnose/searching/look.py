@@ -125,7 +125,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
 def look_again(bench: Workbench, step: Step, hypotheses: Sequence[Hypothesis]) -> Step:
     """A look once more, among some of its hypotheses: each refit goes on from where it came to, with the noise of then.
 
-    Nothing but the best of all is another one for there being fewer, and what is given up beside that.
+    Only which is the best may be another for there being fewer of them, and what is given up beside it.
     """
     assert step.begun is not None  # kept of first looks
     bench.put_back(step.begun.bench)
