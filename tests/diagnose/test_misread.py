@@ -208,6 +208,13 @@ def test_a_ship_that_something_else_turns_away_has_no_other_sign():
     assert turned_in(profile, {**trials, right.id: replace(right, r=-right.r)}, [right.id]) == []  # of the yaw rate
 
 
+def test_a_run_that_is_told_as_logged_has_no_other_sign_however_badly_others_are_told():
+    profile, trials = sailed_with([])
+    ids = list(trials)
+    lost = {id: replace(trial, x=1e3 * trial.x, y=1e3 * trial.y) for id, trial in trials.items() if id != ids[1]}
+    assert turned_in(profile, {**trials, **lost}, [ids[1]]) == []
+
+
 def test_all_rudders_are_turned_and_nothing_else():
     trial = replace(TRIALS[0], extra={"delta_port": TRIALS[0].delta + 1.0, "wind_speed": TRIALS[0].n})
     turned = with_rudders_turned(trial)
