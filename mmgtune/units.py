@@ -28,7 +28,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": DEG},
     "s/m": {"s/m": 1.0, "per m/s": 1.0, "per kn": 1.0 / KNOT},
     "m/s^2": {"m/s^2": 1.0, "m/s in ten minutes": 1.0 / 600.0},
-    "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
+    "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0, "rad/s": 0.5 / math.pi},
     "1/s^2": {"1/s^2": 1.0, "rpm/s": 1.0 / 60.0},
     "N": {"N": 1.0, "kN": 1e3},
     "N m": {"N m": 1.0, "kN m": 1e3},

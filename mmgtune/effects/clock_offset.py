@@ -24,9 +24,10 @@ EFFECT = ClockEffect(
         "seconds": Parameter(
             "how late the control log is: what acted at t is logged at t + seconds",
             "s",
-            bounds=lambda ship: (-0.5 * ship.L / ship.U, 0.5 * ship.L / ship.U),
+            bounds=lambda ship: (-2.0 * ship.L / ship.U, 2.0 * ship.L / ship.U),
             typical=lambda ship: 0.05 * ship.L / ship.U,
-            bounds_source="half the time of a ship length",
+            far=lambda ship: tuple(by * ship.L / ship.U for by in (-1.6, -0.8, -0.4, 0.4, 0.8, 1.6)),
+            bounds_source="the time of two ship lengths",
         )
     },
     variants=(("seconds",),),

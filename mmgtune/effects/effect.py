@@ -35,12 +35,15 @@ class Parameter(Field):
     null      value at which the effect is absent
     bounds    lowest and highest value looked at when searching for the effect, by ship; ``bounds_source`` says why
     typical   a size worth finding, by ship: signatures are taken over this distance from the null
+    far       values far from the null that a search begins at too, by ship, where much is wrong: from the null no slope
+              leads there
     chart     "linear"; "reciprocal" where the null is at infinity; "polar" for a size followed by its direction
     """
 
     null: float = 0.0
     bounds: Callable[[Scale], tuple[float, float]] = lambda _: (-1.0, 1.0)
     typical: Callable[[Scale], float] = lambda _: 0.1
+    far: Callable[[Scale], tuple[float, ...]] = lambda _: ()
     chart: str = "linear"
     bounds_source: str = ""
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
-from .effect import ActuatorEffect, factor_about_one
+from .effect import ActuatorEffect, Parameter
 
 
 class RpmScale(NamedTuple):
@@ -26,7 +26,18 @@ EFFECT = ActuatorEffect(
     params=RpmScale,
     function=rpm_scale,
     cites=(),
-    fields={"factor": factor_about_one("revolutions over indicated revolutions", 0.3, 0.02, "thrust changes by half")},
+    fields={
+        "factor": Parameter(
+            "revolutions over indicated revolutions",
+            low=0.0,
+            high=3.0,
+            null=1.0,
+            bounds=lambda _: (0.2, 3.0),
+            typical=lambda _: 0.02,
+            far=lambda _: (0.3, 0.5, 1.5, 2.0, 2.5),
+            bounds_source="the ratio of a gear between the shaft and what is counted",
+        )
+    },
     akin=("engine-droop", "thrust"),
     variants=(("factor",),),
     varies=("factor",),

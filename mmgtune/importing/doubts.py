@@ -14,7 +14,7 @@ from ..arrays import FloatArray
 from ..phrases import aboard
 from ..physics.frame import to_earth
 from ..trial import Trial
-from ..trial.checks.finding import Finding, Rescale
+from ..trial.checks.finding import Finding, Rescale, Shift
 from ..trial.kinematics import turning, white_noise
 from ..units import DEG
 from .cutting import standing
@@ -281,6 +281,8 @@ def _rise(values: FloatArray) -> float:
 
 def fix_in_map(fix: str) -> str:
     """A fix by arithmetic as the key of the map to change; any other as it is."""
+    if isinstance(fix, Shift):
+        return f'say late = "{fix.late:.2g} s" in [columns] of the map, for the rudder and all that was logged with it'
     if not isinstance(fix, Rescale):
         return fix
     place = "format, unit or scale in [time]" if fix.column == "t" else f"unit or scale in [columns.{fix.column}]"

@@ -45,7 +45,7 @@ from .maps.reading_map import load_map
 from .means import with_mean
 from .proposing.elsewhere import yaw_rate_elsewhere
 from .quality import quality_of, quality_text, same_units_throughout
-from .record import Record, record_of, time_in_seconds
+from .record import Record, record_of, time_in_seconds, when_it_happened
 from .yaw import heading_recovered
 
 REPORT = "import-report.json"
@@ -410,6 +410,7 @@ def _drop_duplicates(table: Table) -> None:
 def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piece]:
     """What each trial in a record is made of, in the trial format.  Raises LogError where none is left."""
     where = str(record.path)
+    record = when_it_happened(record, log_map)
     record = heading_recovered(without_spikes(with_local_positions(record, log_map)), log_map)
     grid = on_grid(record, log_map, step)
     columns = dict(grid.columns)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,16 +12,15 @@ import numpy as np
 from .. import units
 from ..arrays import BoolArray, FloatArray
 from ..errors import LogError, Problem
+from ..phrases import listed
 from .cells.degrees import DDMM
 from .cells.digits import print_step, within_digits
 from .cells.headers import unit_in
 from .cells.seldom import is_seldom
 from .formats.table import TIME, Table
 from .maps.mapping import LogMap, Source, TimeSource
-from .maps.quantities import AGAINST, known_quantity, meaning
+from .maps.quantities import AGAINST, PAIRS, known_quantity, meaning
 
-PAIRS = (("latitude", "longitude"), ("x", "y"), ("u", "v"))
-"""Quantities that are read together."""
 POSITIONS = (("latitude", "longitude"), ("x", "y"))
 FEWEST_UPDATES, MOST_REPEATS = 20, 20
 """Updates of a position that show how often it comes, and rows up to which it may be written over and over."""
@@ -116,6 +115,20 @@ class Record:
     def has_velocities(self) -> bool:
         """Whether velocities were logged, and do not come from the positions."""
         return {"u", "v"} <= set(self.series) or "sog" in self.series
+
+
+def when_it_happened(record: Record, log_map: LogMap) -> Record:
+    """The record with what the map says was logged late at the times it is of, which its notes say."""
+    late = {name: source.late for name, source in log_map.sources.items() if source.late and name in record.series}
+    if not late:
+        return record
+    series = {name: replace(one, t=one.t - late.get(name, 0.0)) for name, one in record.series.items()}
+    of: dict[float, list[str]] = {}
+    for name, by in late.items():
+        of.setdefault(by, []).append(name)
+    told = [f"taken {abs(by):g} s {'earlier' if by > 0.0 else 'later'} than logged, as the map says" for by in of]
+    notes = [f"{listed(names)}: {words}" for names, words in zip(of.values(), told, strict=True)]
+    return replace(record, series=series, notes=[*record.notes, *notes])
 
 
 def time_in_seconds(table: Table, log_map: LogMap) -> FloatArray:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
+from math import cos, sin
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +36,22 @@ def made(
     **facts: Any,
 ) -> Trial:
     """A turn, or a zigzag, of a ship whose yaw rate follows the rudder with ``lag`` [s]; noisy where seeded."""
+    sailed = _sailed(angle, zigzag, samples, dt, speed, lag, rudder_rate, n)
+    columns = dict(zip(("t", "x", "y", "psi", "u", "v", "r", "n", "delta"), sailed.T.copy(), strict=True))
+    if seed is not None:
+        rng = np.random.default_rng(seed)
+        for name, sigma in NOISE.items():
+            columns[name] = columns[name] + sigma * rng.standard_normal(samples)
+    columns["v_m"] = columns.pop("v")
+    told = {"ship": "ketch", "manoeuvre": "zigzag" if zigzag else "turning", "source": "measured", **facts}
+    return Trial(id=id, **columns, **told)
+
+
+@cache
+def _sailed(
+    angle: float, zigzag: bool, samples: int, dt: float, speed: float, lag: float, rudder_rate: float, n: float
+) -> FloatArray:
+    """The run without noise, (n_samples, n_channels): many tests begin with the same."""
     fine = 10
     h = dt / fine
     x = y = psi = r = delta = 0.0
@@ -43,21 +61,14 @@ def made(
         u, v = speed * (1.0 - 0.3 * abs(r) * lag), -speed * 5.0 * lag / 20.0 * r
         if k % fine == 0:
             rows.append((k * h, x, y, psi, u, v, r, n, delta))
-        if zigzag and psi * np.sign(order) > abs(angle):
+        if zigzag and psi * order > abs(angle * order):
             order = -order
-        delta += float(np.clip(order - delta, -rudder_rate * h, rudder_rate * h))
+        delta += min(max(order - delta, -rudder_rate * h), rudder_rate * h)
         r += h / lag * (delta / lag - r)
         psi += h * r
-        x += h * (u * np.cos(psi) - v * np.sin(psi))
-        y += h * (u * np.sin(psi) + v * np.cos(psi))
-    columns = dict(zip(("t", "x", "y", "psi", "u", "v", "r", "n", "delta"), np.array(rows).T, strict=True))
-    if seed is not None:
-        rng = np.random.default_rng(seed)
-        for name, sigma in NOISE.items():
-            columns[name] = columns[name] + sigma * rng.standard_normal(samples)
-    columns["v_m"] = columns.pop("v")
-    told = {"ship": "ketch", "manoeuvre": "zigzag" if zigzag else "turning", "source": "measured", **facts}
-    return Trial(id=id, **columns, **told)
+        x += h * (u * cos(psi) - v * sin(psi))
+        y += h * (u * sin(psi) + v * cos(psi))
+    return np.array(rows)
 
 
 def changed(trial: Trial, name: str, change: Any) -> Trial:

@@ -17,7 +17,7 @@ from ..bench.hypotheses import Hypothesis
 from ..bench.runs import spread_key
 from ..bench.workbench import TOLERANCE, Point, Workbench
 from ..signatures.beside import free_with, kept_free, origin
-from ..signatures.linear import Linear, inwards, typical
+from ..signatures.linear import Linear, far_from_null, inwards, typical
 from ..signatures.screening import Score, told_by
 from .base_fit import unnoticed
 
@@ -209,7 +209,8 @@ class Refitter:
 
     def starts(self, point: Point, score: Score, sizes: Sequence[float]) -> FloatArray:
         """Where the refit of a hypothesis starts from a point, (n_names, n_starts): where its score says, and for an
-        effect with one side only, whose slope at the null misleads, at sizes around the typical.
+        effect with one side only, whose slope at the null misleads, at sizes around the typical.  Where much is left
+        and several sizes are asked for, it starts far from the null too.
 
         Where it replaces a target that ended at a bound, the other targets were drawn astray by that one: it also
         starts from the profile's values of the targets.
@@ -222,6 +223,8 @@ class Refitter:
         away = inwards(self.bench.null(names))
         if away.any():
             places += [null + away * size * factor for factor in sizes]
+        if self.strong and len(sizes) > 1 and not score.hypothesis.by:
+            places += far_from_null(self.bench, names)
         kept = kept_free(point, score.hypothesis)
         others = [point.unit[kept]]
         if score.hypothesis.instead:

@@ -237,6 +237,18 @@ def typical(bench: Workbench, name: str) -> float:
     return float(parameter.typical(scale_of(bench.model.profile)) / bench.box.width[i])
 
 
+def far_from_null(bench: Workbench, names: Sequence[str]) -> list[FloatArray]:
+    """Places (n_names,) in the unit cube far from the null of a single parameter; none of several."""
+    if len(names) > 1:
+        return []
+    (name,) = names
+    parameter = parameter_of(bench.model, name)
+    assert parameter is not None  # asked of parameters of effects only
+    i = bench.box.names.index(base_of(name))
+    values = np.array(parameter.far(scale_of(bench.model.profile)))
+    return [np.array([z]) for z in ((values - bench.box.low[i]) / bench.box.width[i]).tolist()]
+
+
 @dataclass(eq=False)
 class Steps:
     """Steps that differences are taken over, about a place in the unit cube: of what is free to either side, of what is

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -17,13 +18,32 @@ TIME_OF_DAY, MINUTES, EITHER = "clock", "mm:ss", "clock or mm:ss"
 DIGITS = "hhmmss"
 """The same without colons: a time of day as one number."""
 _TWO, _SPLIT = r"(\d{1,3}):(\d{2})", r"(\d{1,3}):(\d{2})[.,]\d*"
+_HOURS, _MINUTES, _SECONDS = "[hH時时시]|시간", "[mM]|min|分|분", "[sS]|sec|秒|초"
+_WORDED = rf"(?:(\d{{1,2}})\s*(?:{_HOURS})\s*)?(\d{{1,3}})\s*(?:{_MINUTES})\s*(\d{{1,2}}(?:[.,]\d*)?)\s*(?:{_SECONDS})"
+"""Hours, if any, minutes and seconds, each with its unit behind it: 1h02m03.5s, 12時34分56秒."""
 _FEW = 0.02
 """Share of damaged stamps that tells nothing."""
 
 
 def are_times(texts: Any) -> bool:
     """Whether most cells of a pandas column of texts are such stamps."""
+    texts = with_colons(texts)
     return bool(len(texts)) and bool((_matches(texts, CLOCK) | _matches(texts, WATCH)).mean() > 0.5)
+
+
+def with_colons(texts: Any) -> Any:
+    """A pandas column of texts with colons in place of the units of stamps that have them; as it is where its first has
+    none.  Such stamps say their hours, if only as 0, so that nothing is left to tell."""
+    first = texts.dropna()
+    first = first[first != ""].head(1)
+    if not len(first) or not _matches(first, _WORDED).all():
+        return texts
+
+    def colons(found: re.Match[str]) -> str:
+        h, m, s = found.groups()
+        return f"{h or 0}:{int(m):02d}:{s if len(re.split('[.,]', s)[0]) > 1 else '0' + s}"
+
+    return texts.str.replace(f"^{_WORDED}$", colons, regex=True)
 
 
 def times_told(texts: Any) -> str:
@@ -32,7 +52,7 @@ def times_told(texts: Any) -> str:
     Told by a third number, by AM and PM, by a fraction, by a first number that no hour is, and by midnight.
     """
     known = texts.dropna()
-    known = known[known != ""]
+    known = with_colons(known[known != ""])
     if not are_times(known):
         return ""
     two = _matches(known, _TWO)
@@ -57,7 +77,7 @@ def times_told(texts: Any) -> str:
 
 def of_day(texts: Any) -> FloatArray:
     """Seconds since midnight (n_rows,) of times of day; NaN where a cell is none."""
-    parts = texts.str.extract(f"^{CLOCK}$")
+    parts = with_colons(texts).str.extract(f"^{CLOCK}$")
     half = parts.pop(3).str.lower()
     h, m, s = _numbers(parts.fillna({2: "0"}))
     h = np.where(half.notna().to_numpy(dtype=bool), np.mod(h, 12.0), h)
@@ -89,7 +109,7 @@ def in_digits(numbers: FloatArray) -> bool:
 
 def of_watch(texts: Any) -> FloatArray:
     """Seconds (n_rows,) of a stopwatch; NaN where a cell is no stamp of one."""
-    h, m, s = _numbers(texts.str.extract(f"^{WATCH}$").fillna({0: "0"}))
+    h, m, s = _numbers(with_colons(texts).str.extract(f"^{WATCH}$").fillna({0: "0"}))
     return np.asarray(3600.0 * h + 60.0 * m + s)
 
 

@@ -15,8 +15,8 @@ from ..cells.numerals import numbers_in
 from ..maps.mapping import LogMap
 from ..maps.quantities import AGAINST, known_quantity, quantity_of
 
-_PORT = ("P", "PT", "PORT", "BB")
-_STARBOARD = ("S", "SB", "STB", "STBD", "STARBOARD")
+_PORT = ("P", "PT", "PORT", "BB", "左", "左舷", "좌", "좌현")
+_STARBOARD = ("S", "SB", "STB", "STBD", "STARBOARD", "右", "右舷", "우", "우현")
 _WORD = rf"({'|'.join(sorted((*_PORT, *_STARBOARD), key=len, reverse=True))})"
 _CELL = rf"^(?:{_WORD}(?:\.\s+|\s*))?(\d+[.,]?\d*|[.,]\d+)\s*{_WORD}?\.?$"
 _MIDSHIPS = (

@@ -9,7 +9,7 @@ from ...inputs import INPUTS
 from ...toml_reading import TomlReader
 from ...trial.schema import MAIN_INPUTS, surrounding
 from .mapping import TABLES, LogMap
-from .quantities import meaning
+from .quantities import PAIRS, meaning
 
 IN_SENTENCES = (
     "psi", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app",
@@ -90,6 +90,10 @@ def check(made: LogMap, reader: TomlReader) -> None:
         reader.problem("velocities are of the antenna, but no [antenna] says where it is", "velocity", "point")
     if made.point == "stated" and not {"u", "v"} & set(sources) and "sog" not in sources:
         reader.problem("'velocity.point' is given, but no velocities are", "velocity", "point", fix="remove it")
+    for pair in PAIRS:
+        if set(pair) <= set(sources) and sources[pair[0]].late != sources[pair[1]].late:
+            what = f"'{pair[0]}' and '{pair[1]}' are late by different times"
+            reader.problem(what, f"columns.{pair[1]}", "late", "they are of one sensor", "say the same in both")
     for name, words, axes in (("u", ("north", "south"), "earth"), ("v", ("east", "west"), "earth")):
         positive = sources[name].positive if name in sources else None
         if positive in words and made.axes != axes:

@@ -72,6 +72,7 @@ class Source:
     direction  "from" or "to", of wind, current and waves; None for other quantities
     scale      factor on the log's numbers, before the unit
     offset     added after unit and sign, in the program's unit
+    late       how much later than it happened it was logged [s]
     recover    where few digits are printed. "print-resolution": smoothed within them; "yaw-rate": the integral of r,
                its bias and lag fitted, in place of the heading; None: as it is printed
     parts      further columns of a latitude or longitude by what they hold, one of position_parts.PARTS
@@ -87,6 +88,7 @@ class Source:
     direction: str | None = None
     scale: float = 1.0
     offset: float = 0.0
+    late: float = 0.0
     recover: str | None = None
     parts: dict[str, str | int] = field(default_factory=dict)
     line: int = 0

@@ -57,6 +57,9 @@ def _around(column: Column) -> Quantity:
     return Quantity(column.unit, _TURNS, angle=True, origin=column.counted_from == "north", points=column.points)
 
 
+PAIRS = (("latitude", "longitude"), ("x", "y"), ("u", "v"))
+"""Quantities that are read together."""
+
 QUANTITIES: dict[str, Quantity] = {
     "x": Quantity("m", ("north", "south")),
     "y": Quantity("m", ("east", "west", "starboard", "port")),

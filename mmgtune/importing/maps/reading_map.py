@@ -26,7 +26,8 @@ from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
 
 SCHEMA = 1
 COLUMN_KEYS = (
-    "column", "value", "unit", "header_says", "positive", "zero", "direction", "scale", "offset", "recover", *PARTS,
+    "column", "value", "unit", "header_says", "positive", "zero", "direction", "scale", "offset", "late",
+    "recover", *PARTS,
 )  # fmt: skip
 RECOVER = {"x": ("print-resolution",), "y": ("print-resolution",), "psi": ("yaw-rate",)}
 """What a map may have made up for where few digits are printed."""
@@ -433,6 +434,7 @@ class _Reader(TomlReader):
             direction=direction,
             scale=self.number(where, table, "scale", 1.0),
             offset=offset or 0.0,
+            late=(self.parsed(where, "late", table["late"], "s") if "late" in table else None) or 0.0,
             recover=self.choice(where, table, "recover", RECOVER[name]) if name in RECOVER else None,
             parts={key: column for key, column in parts.items() if column is not None},
             line=self.line(where),

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,6 +91,7 @@ def tracks(
     rates = _rates(moving, slopes, means)
     whole = {a for a, _ in rates}
     found: dict[Track, tuple[float, str]] = {}
+    against = {k for k in among if said[k] in _AGAINST and _AGAINST[said[k]].search(sample.names[k])}
     # Revolutions, speeds and rates follow a turning ship too, well enough to pass for the position that is missing.
     places = [k for k in moving if not _is(units_said[k], *_NO_PLACES)]
     for i, j in itertools.combinations(places, 2):
@@ -97,7 +99,9 @@ def tracks(
             a, b = slopes[i], slopes[j]
             narrow = float(np.cos(np.nanmedian(columns[i]) * DEG)) if geographic else 1.0
             b = b * narrow
-            for reading, score, words in _of_pair(i, j, a, b, geographic, moving, slopes, means, windows, said):
+            for reading, score, words in _of_pair(
+                i, j, a, b, geographic, moving, slopes, means, windows, said, against
+            ):
                 # What is the rate of something else is no position.
                 derived = sum(_derived(k, (i, j), rates) for k in (i, j, reading.psi))
                 score -= 0.4 * derived - 0.2 * (reading.psi in whole)
@@ -109,6 +113,9 @@ def tracks(
 
 
 _PLACES = ("x", "y", "latitude", "longitude")
+_AGAINST = {"latitude": re.compile(r"\b(S|deg ?S|south|süd|sud|sur)\b|°S", re.IGNORECASE),
+            "longitude": re.compile(r"\b(W|deg ?W|west|ouest|oeste)\b|°W", re.IGNORECASE)}  # fmt: skip
+"""What names of latitudes and longitudes say that count to the south and to the west."""
 _NO_PLACES = ("1/s", "m/s", "rad/s")
 """Units of no position."""
 
@@ -184,8 +191,12 @@ def _of_pair(
     means: dict[int, FloatArray],
     windows: Windows,
     said: Sequence[str],
+    against: Collection[int],
 ) -> list[tuple[Track, float, str]]:
-    """Readings of two columns as the position, with any other as the heading."""
+    """Readings of two columns as the position, with any other as the heading.
+
+    against  columns whose names say that they count to the south or the west
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         speed = np.hypot(a, b)
     used = np.isfinite(speed) & (speed > 0.3 * np.nanmedian(speed))
@@ -219,7 +230,7 @@ def _of_pair(
                 ahead = float(np.angle(np.mean(off * _straight(slopes[k][used][known]))))
                 if not (geographic or _alike(a[used][known], b[used][known], sense * psi[known] + ahead)):
                     continue
-                for track, cost in _readings(i, j, k, sense, ahead, geographic, degrees, windows, said):
+                for track, cost in _readings(i, j, k, sense, ahead, geographic, degrees, windows, said, against):
                     words = f"the course follows it: {100.0 * told:.0f} % of the course's changes"
                     found.append((track, told - cost, words))
     return found
@@ -256,6 +267,7 @@ def _readings(
     degrees: bool,
     windows: Windows,
     said: Sequence[str],
+    against: Collection[int],
 ) -> list[tuple[Track, float]]:
     """Ways to count in which the course, ``sense`` times column k plus ``offset`` from i towards j, is the heading.
 
@@ -270,14 +282,17 @@ def _readings(
             A, B = -A, np.pi - B
         if west:
             A, B = -A, -B
-        if geographic and (south or west or np.nanmax(np.abs(windows.columns[x])) > 90.0):
+        # Degrees count to the south and the west where their names say so, and nowhere else.
+        unsaid = (south and x not in against) or (west and y not in against)
+        if geographic and (unsaid or np.nanmax(np.abs(windows.columns[x])) > 90.0):
             continue
         for east in (False, True):
             miss = _turned(A * offset + B - (np.pi / 2.0 if east else 0.0))
             if abs(miss) > OFF:
                 continue
             left = A * sense < 0.0
-            cost = 0.30 * left + 0.15 * east + 0.35 * south + 0.20 * west + 0.02 * swapped + 0.1 * abs(miss)
+            cost = 0.30 * left + 0.15 * east + 0.02 * swapped + 0.1 * abs(miss)
+            cost += 0.35 * (south != (x in against)) + 0.20 * (west != (y in against))
             cost += _against(said[x], ("x", "latitude")) + _against(said[y], ("y", "longitude"))
             cost += -0.3 if said[k] == "psi" else 0.25 if said[k] == "cog" else 0.3 if said[k] else 0.0
             # A compass counts clockwise from 0 to 360.
@@ -304,6 +319,8 @@ def keys_of(track: Track, sample: Sample, unit: str) -> dict[str, dict[str, Any]
         psi["zero"] = "east"
     if track.geographic:
         x, y = ({} if k in sample.written else {"unit": "deg"} for k in (track.x, track.y))
+        x |= {"positive": "south"} if track.south else {}
+        y |= {"positive": "west"} if track.west else {}
         return {"latitude": x, "longitude": y, "psi": psi}
     north = {"unit": unit, "positive": "south" if track.south else "north"}
     return {"x": north, "y": {"unit": unit, "positive": "west" if track.west else "east"}, "psi": psi}

@@ -69,6 +69,8 @@ def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> li
             continue
         if said[k] in ("latitude", "longitude"):
             continue  # a ship that holds her course makes one grow as evenly
+        if said[k] != TIME and units_said[k] not in ("", *units.factors("s")):
+            continue  # what is in metres is no time, however steadily it grows
         known = numbers[np.isfinite(numbers)]
         if said[k] in ("", TIME) and in_digits(numbers):
             words = f"its cells are {CELLS[DIGITS]}, hours, minutes and seconds, such as {known[0]:06.0f}"

@@ -12,7 +12,7 @@ from ...units import DEG
 from .finder import Finder
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
-from .orders import rudders, shafts
+from .orders import TURNS, rudders, shafts
 from .words import LOG_SPEED, ORDER, OTHER, ROLL, side_named, turns
 
 WAY = (0.01, 0.04)
@@ -205,13 +205,13 @@ def _shaft(
     clear: bool = True,
 ) -> None:
     said = _unit_said(find, column)
-    fits = {unit: float(np.median(ways[column, unit])) for unit in ("rpm", "rps") if ways.get((column, unit))}
+    fits = {unit: float(np.median(ways[column, unit])) for unit in TURNS if ways.get((column, unit))}
     sizes = {unit: abs(np.log(way / 0.02)) for unit, way in fits.items() if way > 0.0}
     seen = min(sizes, key=lambda one: sizes[one], default="")
     named = find.said[column].startswith("n")
     words = ["its name says so"] if named else ["it stays the same over long times, as revolutions do"]
     confidence = SURE if named and clear else LIKELY
-    if said in ("rpm", "rps"):
+    if said in TURNS:
         unit = said
         words.append(f"in {said}, as its name says")
         if said in fits and not WAY[0] / HARDLY < fits[said] < WAY[1] * HARDLY:

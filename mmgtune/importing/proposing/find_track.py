@@ -156,7 +156,7 @@ def _confidence(find: Finder, scores: Mapping[Track, float], track: Track, cours
     """How sure a reading is, by what speaks for those of other columns; that of the course itself is no other."""
     others = [one for one in scores if (one.x, one.y, one.psi) != (track.x, track.y, track.psi) and one.psi != course]
     rival = max((scores[one] for one in others), default=0.0)
-    clear = scores[track] > 1.1 * rival
+    clear = scores[track] > 1.1 * rival and not (track.geographic and track.left)
     return SURE if clear and scores[track] > 0.45 * len(find.looks) else LIKELY
 
 
@@ -219,6 +219,13 @@ def _doubt_mirror_image(find: Finder, scores: Mapping[Track, float], track: Trac
         and scores[track] < 1.05 * mirrored
     ):
         find.notes.append("no motion shows its mirror image: y is taken to the east and the heading clockwise")
+    elif track.geographic and track.left:
+        psi, y = find.shown(track.psi), find.shown(track.y)
+        find.notes.append(
+            f"{psi} counts counterclockwise if {y} is to the east, as no compass does: where {y} is to the west, give "
+            f'it positive = "west", {psi} positive = "clockwise", and exchange port and starboard under r, v and the '
+            "rudder"
+        )
     elif _as_robots_have_them(find, track):
         x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
         find.notes.append(

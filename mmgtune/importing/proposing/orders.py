@@ -8,12 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...trial.checks.cross_checks import ADVANCE
-from ...units import DEG
+from ...units import DEG, factors
 from ..conventions import RudderEvidence, rudder_evidence
 from .look import Look
 
 LARGEST = 1.75
 """Rudder angle [rad] beyond which a column is in degrees."""
+
+TURNS = {one: factor for one, factor in factors("1/s").items() if one != "1/s"}
+"""Units of revolutions, in turns a second."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ def rudders(look: Look, among: Sequence[int], units_said: Sequence[str]) -> list
 class Shaft:
     """A column that may be revolutions.
 
-    unit     "rpm" or "rps", "" where both may be
+    unit     "rpm", "rps" or what its name says, "" where both may be
     steady   share of the time it does not change
     advance  way with each turn, in lengths guessed from how quickly she turns, by unit
     """
@@ -90,10 +93,11 @@ def shafts(look: Look, among: Sequence[int], units_said: Sequence[str], rudder: 
         size = float(np.percentile(np.abs(values), 80.0))
         if size == 0.0 or look.windows.periods[k]:
             continue
-        advance = {unit: speed / (size * factor) / length for unit, factor in (("rpm", 1.0 / 60.0), ("rps", 1.0))}
         said = units_said[k].replace("1/s", "rps")
+        may_be = [said] if said in TURNS else ["rpm", "rps"]
+        advance = {unit: speed / (size * TURNS[unit]) / length for unit in may_be}
         fits = {one: abs(np.log(way / 0.025)) for one, way in advance.items() if ADVANCE[0] < way < ADVANCE[1]}
-        unit = said if said in ("rpm", "rps") else min(fits, key=lambda one: fits[one], default="")
+        unit = said if said in TURNS else min(fits, key=lambda one: fits[one], default="")
         spread = float(np.ptp(values))
         steady = 1.0 if spread == 0.0 else float(np.mean(np.abs(np.diff(values)) < 2e-3 * spread))
         one_way = float(np.mean(values > -0.02 * size))

@@ -172,11 +172,14 @@ _UNITS = {
     "graden": "deg", "gr": "deg", "º": "deg", "°": "deg", "度": "deg", "도": "deg", "rad": "rad", "radians": "rad",
     "degps": "deg/s", "deg/sec": "deg/s", "dps": "deg/s", "grad/s": "deg/s", "°/sec": "deg/s", "º/s": "deg/s",
     "grad/min": "deg/min", "deg/min": "deg/min", "°/min": "deg/min", "deg/minute": "deg/min", "degpmin": "deg/min",
+    "度/秒": "deg/s", "度/s": "deg/s", "도/초": "deg/s", "度/分": "deg/min", "度/min": "deg/min", "도/분": "deg/min",
     "graden/min": "deg/min", "grados/min": "deg/min", "rads": "rad/s", "rad/sec": "rad/s", "radps": "rad/s",
     "rpm": "rpm", "u/min": "rpm", "upm": "rpm", "tr/min": "rpm", "omw/min": "rpm", "giri/min": "rpm", "t/min": "rpm",
+    "回転/分": "rpm", "转/分": "rpm", "轉/分": "rpm", "회전/분": "rpm",
     "min-1": "rpm", "min^-1": "rpm", "min\u22121": "rpm", "obr/min": "rpm",
     "varv/min": "rpm", "omdr/min": "rpm", "rps": "rps", "rev/s": "rps", "u/s": "rps", "tr/s": "rps", "hz": "1/s",
-    "sek": "s", "sec": "s", "msec": "ms", "metres": "m", "meter": "m", "metros": "m", "米": "m", "秒": "s",
+    "sek": "s", "sec": "s", "msec": "ms", "metres": "m", "meter": "m", "metros": "m", "米": "m", "メートル": "m",
+    "秒": "s", "초": "s",
 }  # fmt: skip
 """Names of units beyond those that maps know, as other languages and names without brackets write them."""
 

@@ -10,6 +10,7 @@ from ..model import Trial
 from ..schema import OPTIONAL, known_column
 from ..unusable import unusable
 from .control_checks import control_findings
+from .control_clock import clock_findings
 from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .motion_checks import CONTRADICTED, motion_findings, sway_findings
@@ -49,6 +50,7 @@ def check_trial(trial: Trial, L_pp: float | None = None, *, usable: bool = False
             *motion,
             *swell_findings(trial, where, L_pp),
             *control_findings(trial, where),
+            *clock_findings(trial, where),
             *cross_findings(trial, where, L_pp, contradicted, ends),
             *surroundings_findings(trial, where),
             *wind_findings(trial, where),

@@ -20,6 +20,20 @@ class Rescale(str):
         return made
 
 
+class Shift(str):
+    """A fix by a shift in time of what one logger wrote, which a map of the log can say instead.
+
+    late  how much later than it happened it was logged [s]
+    """
+
+    late: float
+
+    def __new__(cls, words: str, late: float = 0.0) -> Self:
+        made = super().__new__(cls, words)
+        made.late = late
+        return made
+
+
 @dataclass(frozen=True)
 class Finding:
     """Something about a trial a user should know.

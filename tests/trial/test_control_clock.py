@@ -1,0 +1,69 @@
+"""A rudder that was logged by another clock than the motion is told, by how much, and nothing else is taken for it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.resources import folder
+from mmgtune.trial import Trial, check_trial, load_trials
+from mmgtune.trial.checks.control_clock import shift_of
+
+from .made import made
+
+TRIALS = load_trials("suzaku").trials
+
+
+def logged_by(late: float, trial: Trial) -> Trial:
+    """A trial whose rudder and revolutions were logged so much later [s] than they acted."""
+    then = trial.t - late
+    return replace(trial, delta=np.interp(then, trial.t, trial.delta), n=np.interp(then, trial.t, trial.n))
+
+
+@pytest.mark.parametrize("late", [-60.0, -40.0, 30.0, 60.0])
+@pytest.mark.parametrize("name", ["zigzag_10", "zigzag_20"])
+def test_a_clock_that_is_off(name: str, late: float) -> None:
+    found = shift_of(logged_by(late, TRIALS[name]))
+    assert found is not None
+    assert -found[0] == pytest.approx(late, abs=8.0)
+
+
+def test_what_it_says() -> None:
+    (said,) = [one for one in check_trial(logged_by(-60.0, TRIALS["zigzag_20"])) if "logged of her rudder" in one.what]
+    assert said.severity == "warning"
+    assert said.what.startswith("the ship turns about 6")
+    assert "s after what is logged of her rudder" in said.what
+    assert "shift 'delta' and all logged with it by about +6" in said.fix
+    (said,) = [one for one in check_trial(logged_by(60.0, TRIALS["zigzag_20"])) if "logged of her rudder" in one.what]
+    assert "s before what is logged of her rudder" in said.what
+
+
+def test_a_turn_that_begins_before_its_rudder() -> None:
+    found = shift_of(logged_by(60.0, TRIALS["turn_p35"]))
+    assert found is not None
+    assert found[0] == pytest.approx(-60.0, abs=8.0)
+
+
+@pytest.mark.parametrize("ship", ["suzaku", "voyages"])
+def test_none_of_those_that_travel_along(ship: str) -> None:
+    assert not [id for id, trial in load_trials(folder("trials") / ship).trials.items() if shift_of(trial)]
+
+
+@pytest.mark.parametrize("lag", [8.0, 20.0, 60.0])
+@pytest.mark.parametrize("late", [-3.0, 0.0, 3.0])
+def test_what_a_steering_gear_may_take_is_none(lag: float, late: float) -> None:
+    assert shift_of(logged_by(late, made(zigzag=True, lag=lag, seed=1))) is None
+
+
+def test_a_rudder_of_the_other_sign_is_no_clock() -> None:
+    trial = TRIALS["zigzag_20"]
+    assert shift_of(replace(trial, delta=-trial.delta)) is None
+
+
+def test_what_cannot_tell() -> None:
+    trial = logged_by(60.0, TRIALS["zigzag_20"])
+    missing = np.where(np.arange(trial.n_samples) % 2 == 0, trial.r, np.nan)
+    for blind in (replace(trial, r=missing), replace(trial, delta=0.05 * trial.delta), replace(trial, r=0.0 * trial.r)):
+        assert shift_of(blind) is None
