@@ -37,7 +37,7 @@ def cut_at_jumps(record: Record, log_map: LogMap, step: float | None) -> list[Re
     k = int(before[0])
     how = "once" if len(before) == 1 else f"{len(before)} times"
     note = (
-        f"time jumps forward {how}, by up to {apart[before].max():.6g} s, first from {t[k]:.6g} to {t[k + 1]:.6g} s: "
+        f"time jumps forward {how}, by up to {apart[before].max():.6g} s, first from {t[k]:.12g} to {t[k + 1]:.12g} s: "
         "the record is cut there"
     )
     bounds = [-np.inf, *t[before + 1].tolist(), np.inf]

@@ -198,7 +198,8 @@ def test_how_far_another_cause_is_off_without_one(monkeypatch, force, by, tag, m
     monkeypatch.setattr(contributed, "typical", lambda *_: 0.1)
     monkeypatch.setattr(contributed, "size_of", lambda *_: 6.0)
     sizes = {drift: Estimate(drift, 6000.0, 5900.0, 6100.0, 50.0)}
-    assert contributed._moved(bench, found, cause, fewer, sizes) == pytest.approx(moved)
+    assert contributed._moved(bench, found, [waves], fewer, sizes) == pytest.approx(moved)
+    assert contributed._moved(bench, found, [], fewer, sizes) == 0.0
 
 
 @pytest.mark.long
@@ -222,11 +223,15 @@ def test_a_ship_lighter_than_her_profile_is_told_beside_waves(tmp_path):
         ("current", "trial", "hull-term", 0.02),
         ("rudder-gain", "", "memory", 0.003),
         ("rudder-gain", "", "current", 0.0005),
+        ("rudder-gain", "", "rudder-stall", 0.003),
+        ("steady-force", "", "hull-term", 0.02),
+        ("gyro-scale", "", "hull-term", 0.003),
+        ("heading-filter", "", "heading-filter", 0.003),
     ],
 )
 def test_what_the_form_of_others_may_leave(tag, by, beside, share):
     """In water of 1.35 draughts by another formula a hull term was found that was a part of its form; so was one beside
-    an engine of another law."""
+    an engine of another law, and a tow beside a hull that is not the same on both sides."""
     cause, other = (
         Hypothesis(one, one.variants[0], by) for one, by in ((find_effect(tag), by), (find_effect(beside), ""))
     )

@@ -171,6 +171,23 @@ def test_beyond_its_stall_the_force_of_a_rudder_grows_less_or_falls(added, delta
     assert not unchanged.any()
 
 
+def test_a_rudder_may_stall_over_a_width(added):
+    """Half a width beneath the angle it has lost a sixteenth of the width already."""
+    control, width = Control(1.7, 0.5), 0.1
+    _, found = added("rudder-stall", {"angle": 0.2}, control=control)
+    alpha = abs(found.rudder.alpha_R[0])
+    for over in (-0.5 * width, 0.0, 0.5 * width):
+        force, found = added("rudder-stall", {"angle": alpha - over, "width": width}, control=control)
+        felt = alpha - (over + width) ** 2 / (4.0 * width)
+        left = math.sin(felt) / math.sin(alpha)
+        np.testing.assert_allclose(force, [(left - 1.0) * axis[0] for axis in found.rudder.force])
+    for over in (-1.01 * width, 1.01 * width):
+        wide, sharp = (
+            added("rudder-stall", {"angle": alpha - over, "width": w}, control=control)[0] for w in (width, 0.0)
+        )
+        np.testing.assert_allclose(wide, sharp)
+
+
 @pytest.mark.parametrize("control", [STEERED, Control(-1.2, 0.3)])
 def test_an_engine_under_load_turns_the_propeller_slower_than_the_log_says(suzaku, added, control):
     """As if the log had said so; none astern, and none where the ship makes more way a turn than at the approach."""

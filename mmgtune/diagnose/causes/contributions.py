@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...backends import STATES
-from ...effects import SensorEffect
+from ...effects import ForceEffect, SensorEffect
 from ...fitting.least_squares import fit_offsets
 from ...trial import Trial
 from ..bench.hypotheses import Hypothesis
@@ -48,9 +48,9 @@ SMALL, WORTH_ASKING = 0.05, 0.3
 trials are asked whether it does any good."""
 
 FORM, FORM_IF_ROUGH, FORM_OF_TERM = 0.0005, 0.003, 0.02
-"""Share of the error that a cause leaves whose form is 2 % off, one whose formula is no better than 5 %, and, to values
-that differ from run to run and bend to all that is left, one of many terms, which is the nearest to what there is; and,
-to such a term, any cause that is no error of a log: engines give way by laws of their own."""
+"""Share of the error that a cause leaves whose form is 2 % off, one whose formula is no better than 5 %, and, to other
+forces and to values that differ from run to run and bend to all that is left, one of many terms, which is the nearest
+to what there is; and, to such a term, any cause that is no error of a log: engines give way by laws of their own."""
 
 FORM_OF_HULL = 0.05
 """Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it: formulas of shallow
@@ -69,7 +69,7 @@ LEFT, OF_REST, BESIDE_SENSORS = 0.2, 0.9, 0.5
 all must remove, for it to be no matter of their form: what a form leaves has no such shape; beside causes in sensors
 alone, which have no form that could be a little off: a log that shows 1.1 times the speed does so exactly."""
 
-BY_VALUES_OF_RUNS = 10.0
+BY_VALUES_OF_RUNS = 3.0
 """Share of the error on held-out trials over that of the fall of chi-squared, beside a cause with values of each run,
 beyond which it is no more than these: estimated on the first part of a run they miss the rest by chance."""
 
@@ -317,7 +317,8 @@ def _weighed(
         return weighed
     sizes = estimates(bench, found.final)
     for k in asked:
-        moves = _moved(bench, found, found.causes[k], fewer[k], sizes)
+        others = [cause for j, cause in enumerate(found.causes) if j != k and not seems[j]]
+        moves = _moved(bench, found, others, fewer[k], sizes)
         unlike = unlike_without(bench, found, fewer[k])
         sure = _is_sure(bench, found, found.causes[k], sizes)
         weighed[k] = replace(weighed[k], moves=moves, unlike_any=unlike, sure=sure)
@@ -350,17 +351,20 @@ def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[s
     return abs(value - null) > SURELY * 0.5 * abs(high - low)
 
 
-def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, sizes: Mapping[str, Estimate]) -> float:
-    """Largest share of its size by which another cause with one value for all is off without one, of those that are off
+def _moved(
+    bench: Workbench, found: Found, others: Sequence[Hypothesis], fewer: Point, sizes: Mapping[str, Estimate]
+) -> float:
+    """Largest share of its size by which a cause with one value for all is off without another, of those that are off
     by more than their interval allows.
 
-    fewer  the best fit without it
+    others  those that a user would notice: small ones that need each other may all be the form of a large one
+    fewer   the best fit without the one
     """
     values = bench.values(fewer)
     there, gone = (dict(zip(point.names, point.unit, strict=True)) for point in (found.final, fewer))
     largest = 0.0
-    for other in found.causes:
-        if other is cause or other.by or not set(other.names) <= set(gone):
+    for other in others:
+        if other.by or not set(other.names) <= set(gone):
             continue
         # Intervals allow for gusts and groups, which are the same without the cause.
         times = 1.0 if unsteady(other.effect) else TWICE
@@ -474,9 +478,12 @@ def _form_of_others(found: Found, cause: Hypothesis) -> float:
             return FORM_OF_HULL
         if any(not isinstance(one, SensorEffect) for one in others):
             return FORM_OF_TERM
-    if cause.by and any(one.effect.one_of_many for one in found.causes):
+    bends = cause.by or (isinstance(cause.effect, ForceEffect) and not cause.effect.one_of_many)
+    if bends and any(one.effect.one_of_many for one in found.causes):
         return FORM_OF_TERM
-    return FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
+    # Another form of the same effect, as of a filter of second order, is what its formula is off by.
+    again = any(one.tag == cause.tag for one in found.causes if one is not cause)
+    return FORM_IF_ROUGH if again or any(one.rough for one in found.causes) else FORM
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:

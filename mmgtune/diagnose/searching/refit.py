@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..bench.hypotheses import Hypothesis
+from ..bench.inputs import unsteady
 from ..bench.workbench import Point, Workbench
 from ..signatures.screening import Score
 
@@ -19,6 +20,10 @@ BETTER = 5.0
 AS_MUCH, AS_LITTLE = 0.97, 0.9
 """Share of the fall of chi-squared, and of what is left, within which one value of an effect for all runs is a rival of
 values of another that differ between runs: these bend to an effect whose form is a little off."""
+
+OF_FORMULA = 0.02
+"""Share that another may leave more, where both are forces of wind and waves: formulas of these differ by as much from
+ship to ship."""
 
 AKIN = 0.3
 """Share of the fall of chi-squared from which on an effect that acts much like the best may be meant."""
@@ -63,6 +68,8 @@ class Refit:
             return True
         if self.hypothesis.by and not other.hypothesis.by and self._hardly_above(other):
             return False
+        if self._of_formula(other):
+            return False
         better = (self.gain - other.gain) / max(self.score.inflation, other.score.inflation)
         simpler = other.hypothesis.by and not self.hypothesis.by
         return (better >= BETTER or bool(simpler)) and better - self.cost + other.cost >= ENOUGH
@@ -80,6 +87,12 @@ class Refit:
     def _hardly_above(self, other: Refit) -> bool:
         """Whether another explains hardly less and leaves hardly more."""
         return other.gain >= AS_MUCH * self.gain and other.point.chi2 <= self.point.chi2 / AS_LITTLE
+
+    def _of_formula(self, other: Refit) -> bool:
+        """Whether both are forces of wind and waves, between which no more than the formula decides."""
+        both = unsteady(self.hypothesis.effect) and unsteady(other.hypothesis.effect)
+        left = (1.0 + OF_FORMULA) * self.point.chi2
+        return both and other.gain >= AS_MUCH * self.gain and other.point.chi2 <= left
 
 
 def believable_first(refits: list[Refit], level: float) -> list[Refit]:

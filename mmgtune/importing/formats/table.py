@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -62,6 +62,13 @@ class Table:
     stated: dict[str, str] = field(default_factory=dict)
     below: dict[str, str] = field(default_factory=dict)
     sided: tuple[str, ...] = ()
+
+    def leave_out(self, lines: Collection[int]) -> None:
+        """Drop rows by their number in the file, in place."""
+        if lines:
+            kept = ~np.isin(self.rows, list(lines))
+            self.t, self.rows = self.t[kept], self.rows[kept]
+            self.columns = {name: values[kept] for name, values in self.columns.items()}
 
     def place(self, row: int) -> str:
         """Where a row is in the file."""
@@ -267,3 +274,4 @@ class Cells:
         table.notes += units.values()
         if problems:
             raise LogError(*problems)
+        table.leave_out(units)
