@@ -2,6 +2,10 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
+from ..physics.elementary import exp, where
+from ..physics.following import INSTANT
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
 from .heading_bias import heading_shown
@@ -14,17 +18,26 @@ class GyroDrift(NamedTuple):
     heading: Lanes
     heading_alone: Lanes
     yaw_rate: Lanes
+    settles: Lanes
+
+
+BARELY = 1e-6
+"""Share of the time in which a drift dies away up to which it is even."""
 
 
 def gyro_drift(start: State, end: State, held: tuple[Lanes], h: Lanes, e: GyroDrift) -> tuple[State, tuple[Lanes]]:
     """Heading and yaw rate off by their drift [rad/s, rad/s^2] times the time since the first sample, at which they
-    are right (assumption: set before each run; a bias is another effect).
+    are right (assumption: set before each run; a bias is another effect).  It dies away with a time constant where the
+    gyro settles.
 
     The velocity over ground is logged in the axes of the heading shown, but for that part that is of it alone.
     """
     t = held[0] + h
-    seen = heading_shown(end, e.heading * t, e.heading_alone * t)
-    return State(x=seen.x, y=seen.y, psi=seen.psi, u=seen.u, v_m=seen.v_m, r=seen.r + e.yaw_rate * t), (t,)
+    past = t / np.maximum(e.settles, INSTANT)
+    even = past < BARELY
+    drifted = where(even, t, (1.0 - exp(-past)) / np.maximum(past, BARELY) * t)
+    seen = heading_shown(end, e.heading * drifted, e.heading_alone * drifted)
+    return State(x=seen.x, y=seen.y, psi=seen.psi, u=seen.u, v_m=seen.v_m, r=seen.r + e.yaw_rate * drifted), (t,)
 
 
 def gyro_set(state: State, e: GyroDrift) -> tuple[State, tuple[Lanes]]:
@@ -78,7 +91,18 @@ EFFECT = FilterEffect(
             typical=lambda ship: 3e-4 * (ship.U / ship.L) ** 2,
             bounds_source="a third of the speed over the length within thirty ship lengths",
         ),
+        "settles": Parameter(
+            "time constant with which the drift dies away",
+            "s",
+            null=float("inf"),
+            low=0.0,
+            chart="reciprocal",
+            bounds=lambda _: (0.0, 1.0 / 60.0),
+            typical=lambda _: 1.0 / 600.0,
+            bounds_source="from a drift that is even to a minute",
+        ),
     },
+    form={"settles": 1.0 / 600.0},
     variants=(("heading",), ("heading_alone",), ("yaw_rate",)),
     varies=("heading", "heading_alone"),
     subject="drift of the gyro",

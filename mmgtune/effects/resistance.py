@@ -10,7 +10,6 @@ from ..components import AT_LEAST_0
 from ..physics.constants import GRAVITY
 from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter, Scale
-from .signs import each
 from .visited import Visited
 
 
@@ -44,7 +43,13 @@ def unvisited(found: Mapping[str, float], visited: Visited) -> str:
     return visited.lacking_speeds if "slope" in found else ""
 
 
-_WORDS = {"factor": "it was {} times as large", "slope": "its coefficient grew by {} per unit of Froude number"}
+def _sentence(v: Mapping[str, str]) -> str:
+    told = [f"it was {v['factor']} times as large"] if "factor" in v else []
+    if "slope" in v:
+        size = v["slope"].removeprefix("-")
+        told.append(f"its coefficient {'grew' if size == v['slope'] else 'fell'} by {size} per unit of Froude number")
+    return "The resistance differed from the model's: " + " and ".join(told)
+
 
 EFFECT = ForceEffect(
     kind="effects.resistance",
@@ -77,5 +82,5 @@ EFFECT = ForceEffect(
     variants=(("factor",), ("slope",)),
     unvisited=unvisited,
     absorbed={"factor": "hull.R_0"},
-    sentence=lambda v: "The resistance differed from the model's: " + each(_WORDS, v),
+    sentence=_sentence,
 )

@@ -198,8 +198,7 @@ def test_how_far_another_cause_is_off_without_one(monkeypatch, force, by, tag, m
     monkeypatch.setattr(contributed, "typical", lambda *_: 0.1)
     monkeypatch.setattr(contributed, "size_of", lambda *_: 6.0)
     sizes = {drift: Estimate(drift, 6000.0, 5900.0, 6100.0, 50.0)}
-    assert contributed._moved(bench, found, [waves], fewer, sizes) == pytest.approx(moved)
-    assert contributed._moved(bench, found, [], fewer, sizes) == 0.0
+    assert contributed._moved(bench, found, cause, fewer, sizes) == pytest.approx(moved)
 
 
 @pytest.mark.long

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...backends import STATES
-from ...effects import ForceEffect, SensorEffect
+from ...effects import Effect, ForceEffect, SensorEffect
 from ...fitting.least_squares import fit_offsets
 from ...trial import Trial
 from ..bench.hypotheses import Hypothesis
@@ -53,8 +53,9 @@ forces and to values that differ from run to run and bend to all that is left, o
 to what there is; and, to such a term, any cause that is no error of a log: engines give way by laws of their own."""
 
 FORM_OF_HULL = 0.05
-"""Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it: formulas of shallow
-water differ by a fifth, and what one leaves of the other is a term."""
+"""Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it, and to a force of wind or
+waves of another such force: formulas of shallow water, winds and waves differ by a fifth, and what one leaves of the
+other is a term, or a light wind."""
 
 HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
@@ -69,7 +70,7 @@ LEFT, OF_REST, BESIDE_SENSORS = 0.2, 0.9, 0.5
 all must remove, for it to be no matter of their form: what a form leaves has no such shape; beside causes in sensors
 alone, which have no form that could be a little off: a log that shows 1.1 times the speed does so exactly."""
 
-BY_VALUES_OF_RUNS = 3.0
+BY_VALUES_OF_RUNS = 10.0
 """Share of the error on held-out trials over that of the fall of chi-squared, beside a cause with values of each run,
 beyond which it is no more than these: estimated on the first part of a run they miss the rest by chance."""
 
@@ -317,8 +318,7 @@ def _weighed(
         return weighed
     sizes = estimates(bench, found.final)
     for k in asked:
-        others = [cause for j, cause in enumerate(found.causes) if j != k and not seems[j]]
-        moves = _moved(bench, found, others, fewer[k], sizes)
+        moves = _moved(bench, found, found.causes[k], fewer[k], sizes)
         unlike = unlike_without(bench, found, fewer[k])
         sure = _is_sure(bench, found, found.causes[k], sizes)
         weighed[k] = replace(weighed[k], moves=moves, unlike_any=unlike, sure=sure)
@@ -351,20 +351,17 @@ def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[s
     return abs(value - null) > SURELY * 0.5 * abs(high - low)
 
 
-def _moved(
-    bench: Workbench, found: Found, others: Sequence[Hypothesis], fewer: Point, sizes: Mapping[str, Estimate]
-) -> float:
-    """Largest share of its size by which a cause with one value for all is off without another, of those that are off
+def _moved(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, sizes: Mapping[str, Estimate]) -> float:
+    """Largest share of its size by which another cause with one value for all is off without one, of those that are off
     by more than their interval allows.
 
-    others  those that a user would notice: small ones that need each other may all be the form of a large one
-    fewer   the best fit without the one
+    fewer  the best fit without it
     """
     values = bench.values(fewer)
     there, gone = (dict(zip(point.names, point.unit, strict=True)) for point in (found.final, fewer))
     largest = 0.0
-    for other in others:
-        if other.by or not set(other.names) <= set(gone):
+    for other in found.causes:
+        if other is cause or other.by or not set(other.names) <= set(gone):
             continue
         # Intervals allow for gusts and groups, which are the same without the cause.
         times = 1.0 if unsteady(other.effect) else TWICE
@@ -478,12 +475,19 @@ def _form_of_others(found: Found, cause: Hypothesis) -> float:
             return FORM_OF_HULL
         if any(not isinstance(one, SensorEffect) for one in others):
             return FORM_OF_TERM
+    if _of_weather(cause.effect) and any(_of_weather(one.effect) for one in found.causes if one is not cause):
+        return FORM_OF_HULL
     bends = cause.by or (isinstance(cause.effect, ForceEffect) and not cause.effect.one_of_many)
     if bends and any(one.effect.one_of_many for one in found.causes):
         return FORM_OF_TERM
     # Another form of the same effect, as of a filter of second order, is what its formula is off by.
     again = any(one.tag == cause.tag for one in found.causes if one is not cause)
     return FORM_IF_ROUGH if again or any(one.rough for one in found.causes) else FORM
+
+
+def _of_weather(effect: Effect) -> bool:
+    """Whether it is a force of wind or waves, found or measured."""
+    return unsteady(effect) or bool({*effect.of_measured.values()} & {"wind", "wave"})
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:
