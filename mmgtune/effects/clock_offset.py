@@ -3,8 +3,17 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
-from .effect import ClockEffect, Parameter
+from .effect import ClockEffect, Parameter, Scale
 from .signs import signed
+
+A_CLOCK = 90.0
+"""Time [s] by which nobody's watch is off."""
+
+
+def _most(ship: Scale) -> float:
+    """The largest offset [s] that is looked for: ships turn and turn back within minutes, models within seconds."""
+    length = ship.L / ship.U
+    return min(max(2.0 * length, A_CLOCK), 6.0 * length)
 
 
 class ClockOffset(NamedTuple):
@@ -24,10 +33,11 @@ EFFECT = ClockEffect(
         "seconds": Parameter(
             "how late the control log is: what acted at t is logged at t + seconds",
             "s",
-            bounds=lambda ship: (-2.0 * ship.L / ship.U, 2.0 * ship.L / ship.U),
+            bounds=lambda ship: (-_most(ship), _most(ship)),
             typical=lambda ship: 0.05 * ship.L / ship.U,
-            far=lambda ship: tuple(by * ship.L / ship.U for by in (-1.6, -0.8, -0.4, 0.4, 0.8, 1.6)),
-            bounds_source="the time of two ship lengths",
+            far=lambda ship: tuple(by * _most(ship) for by in (-0.8, -0.45, -0.2, 0.2, 0.45, 0.8)),
+            of_run=lambda ship: (-0.5 * ship.L / ship.U, 0.5 * ship.L / ship.U),
+            bounds_source="a minute and a half, no more than the time of six ship lengths, or that of two",
         )
     },
     variants=(("seconds",),),

@@ -37,6 +37,8 @@ class Parameter(Field):
     typical   a size worth finding, by ship: signatures are taken over this distance from the null
     far       values far from the null that a search begins at too, by ship, where much is wrong: from the null no slope
               leads there
+    of_run    lowest and highest value that is believed of a single run, by ship, where that is less than ``bounds``:
+              values of runs bend to much else
     chart     "linear"; "reciprocal" where the null is at infinity; "polar" for a size followed by its direction
     """
 
@@ -44,6 +46,7 @@ class Parameter(Field):
     bounds: Callable[[Scale], tuple[float, float]] = lambda _: (-1.0, 1.0)
     typical: Callable[[Scale], float] = lambda _: 0.1
     far: Callable[[Scale], tuple[float, ...]] = lambda _: ()
+    of_run: Callable[[Scale], tuple[float, float]] | None = None
     chart: str = "linear"
     bounds_source: str = ""
 

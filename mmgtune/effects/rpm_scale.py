@@ -35,6 +35,7 @@ EFFECT = ActuatorEffect(
             bounds=lambda _: (0.2, 3.0),
             typical=lambda _: 0.02,
             far=lambda _: (0.3, 0.5, 1.5, 2.0, 2.5),
+            of_run=lambda _: (0.7, 1.3),
             bounds_source="the ratio of a gear between the shaft and what is counted",
         )
     },

@@ -107,9 +107,13 @@ def test_a_lag_that_the_log_hardly_tells_is_named_among_those_like_it(tmp_path):
     assert "steering-lag" in result.groups[0]
 
 
-def rivalling(gain, cost, inflation=1.0, by="", left=0.0):
+def rivalling(gain, cost, inflation=1.0, by="", left=0.0, tag=""):
     """A refit as far as its rivals ask."""
-    known = (SimpleNamespace(by=by), SimpleNamespace(inflation=inflation), SimpleNamespace(chi2=left))
+    known = (
+        SimpleNamespace(by=by, effect=find_effect(tag)),
+        SimpleNamespace(inflation=inflation),
+        SimpleNamespace(chi2=left),
+    )
     return Refit(*known, gain, cost, 0.0, 1.0, 0.0)
 
 
@@ -132,6 +136,18 @@ def test_values_by_run_do_not_beat_one_value_of_another_effect_that_hardly_leave
     """A lag that is longer out than home looks like a clock that was late by another time in each run."""
     by_run, one = rivalling(1000.0, 5.0, by="trial", left=1000.0), rivalling(of_one, 5.0, left=left)
     assert by_run.beats(one) == beaten
+
+
+@pytest.mark.parametrize(
+    ("of_rival", "tag", "beaten"),
+    [(499_600.0, "wave-drift", False), (499_400.0, "wave-drift", True), (499_600.0, "current", True)],
+    ids=["as a formula has it", "less", "exact"],
+)
+def test_a_wind_does_not_beat_waves_by_its_formula_alone(of_rival, tag, beaten):
+    """A drift force by another law was a wind, whose fall of chi-squared was 87 of 481 000 greater."""
+    wind, rival = rivalling(500_000.0, 10.0, tag="wind"), rivalling(of_rival, 10.0, tag=tag)
+    assert wind.beats(rival) == beaten
+    assert rivalling(1000.0, 10.0, tag="wind").beats(rivalling(970.0, 10.0, tag="wave-drift"))
 
 
 @pytest.mark.long

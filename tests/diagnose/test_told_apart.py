@@ -1,14 +1,18 @@
 """What data cannot tell apart is a group with the trial that would; what parameters must reach is reached."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.answering.separate import Foretold, Suggestion, apart, holds, menu, suggest
+from mmgtune.diagnose.bench.hypotheses import Hypothesis
 from mmgtune.diagnose.bench.workbench import make_workbench
 from mmgtune.diagnose.searching.base_fit import base_fit
+from mmgtune.diagnose.searching.refitting import Refitting
+from mmgtune.effects import find_effect
 from mmgtune.motions import as_trial
 from mmgtune.motions import simulate_trials as sailed
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
@@ -35,6 +39,41 @@ def test_a_dead_time_and_a_late_clock_are_a_group_and_a_change_of_revolutions_wo
     assert result.suggestion is not None
     assert "the revolutions changed on the way" in result.suggestion.manoeuvre
     assert result.suggestion.distance > 10.0
+
+
+@pytest.mark.daily("by a gear")
+@pytest.mark.parametrize(
+    ("tag", "hidden", "rivals"),
+    [
+        ("clock-offset", {"seconds": 60.0}, ("dead-time", "current")),
+        ("rpm-scale", {"factor": 2.0}, ("thrust", "resistance", "current")),
+    ],
+    ids=["late", "by a gear"],
+)
+def test_what_lies_far_from_where_a_search_begins_is_found(tag, hidden, rivals, tmp_path):
+    """A control log a minute late and revolutions logged by half were three causes that nobody could believe."""
+    result = said_of({tag: hidden}, tmp_path, tag, *rivals)
+    assert result.verdict == "found"
+    assert [cause.tag for cause in result.causes] == [tag], result.sentence()
+    ((name, truth),) = hidden.items()
+    found = result.to_dict()["causes"][0]["parameters"][name]
+    assert found["ci95"][0] < truth < found["ci95"][1]
+
+
+@pytest.mark.parametrize(("late", "may_be"), [(10.0, True), (40.0, False)])
+def test_a_clock_of_single_runs_is_not_off_by_more_than_gears_take(late, may_be):
+    """An engine that followed its telegraph late was a clock of the runs in which it was moved, half a minute late."""
+    trials = list(load_trials("suzaku").trials.values())[:3]
+    effect = find_effect("clock-offset")
+    groups = tuple(f"trial:{trial.id}" for trial in trials)
+    apart = Hypothesis(effect, ("seconds",), "trial", groups)
+    bench = make_workbench(load_profile("suzaku"), trials, DiagnoseOptions(), apart.bases)
+    unit = bench.sub_box(apart.names).to_unit(np.array([late, 0.0, -1.0]))
+    end = SimpleNamespace(names=apart.names, unit=unit)
+    refitting = Refitting(SimpleNamespace(bench=bench))
+    assert refitting._may_be_of_runs(apart, end) == may_be
+    alike = SimpleNamespace(names=apart.bases, unit=unit[:1])
+    assert refitting._may_be_of_runs(Hypothesis(effect, ("seconds",)), alike)
 
 
 @pytest.mark.long
@@ -115,6 +154,33 @@ def test_a_stall_that_leaves_the_force_some_of_its_slope_is_no_gain_of_the_rudde
     assert [cause.tag for cause in result.causes] == ["rudder-stall"]
     found = result.to_dict()["causes"][0]["parameters"]["angle"]
     assert found["ci95"][0] < 0.3 < found["ci95"][1]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("width", [0.0, 10.0])
+def test_a_stall_with_a_shoulder_is_one_cause(width):
+    """Beside a sharp one stood a gain of the rudder to each side, and a trim of each run."""
+    profile, rng = load_profile("suzaku"), np.random.default_rng(12)
+    trials = list(load_trials("suzaku").trials.values())
+    ship = with_effects(profile, {"rudder-stall": {"angle": 0.33, "slope": -0.4, "width": width * DEG}}, "made")
+    made = [logged(trial, motion, rng) for trial, motion in zip(trials, sailed(ship, trials), strict=True)]
+    asked = ("rudder-stall", "rudder-gain", "loading", "hull-term")
+    result = diagnose(profile, made, DiagnoseOptions(effects=asked))
+    assert [cause.tag for cause in result.causes] == ["rudder-stall"], result.sentence()
+    found = result.to_dict()["causes"][0]["parameters"]["angle"]
+    assert found["ci95"][0] < 0.33 < found["ci95"][1]
+
+
+@pytest.mark.long
+def test_a_gyro_that_settles_is_off_and_drifts():
+    """Its error died away within minutes, and no sum of an even one and a drift without end left noise."""
+    profile, rng = load_profile("suzaku"), np.random.default_rng(5)
+    trials = list(load_trials("suzaku").trials.values())
+    made = [logged(trial, motion, rng) for trial, motion in zip(trials, sailed(profile, trials), strict=True)]
+    made = [replace(one, psi=one.psi + 3.0 * DEG * np.exp(-one.t / 250.0)) for one in made]
+    asked = ("heading-bias", "gyro-drift", "compass-deviation", "heading-filter")
+    result = diagnose(profile, made, DiagnoseOptions(effects=asked))
+    assert {cause.tag for cause in result.causes} == {"heading-bias", "gyro-drift"}, result.sentence()
 
 
 @pytest.mark.long

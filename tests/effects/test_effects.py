@@ -44,7 +44,7 @@ STRONG = {
     "waves": {"height": 2.0, "direction": 1.0},
     "wave-drift": {"force": 5000.0, "direction": 2.0},
     "steady-force": {"ahead": -2000.0, "side": 3000.0, "moment": -4e4},
-    "rudder-stall": {"angle": 0.3, "slope": 0.4},
+    "rudder-stall": {"angle": 0.3, "slope": 0.4, "width": 0.1},
     "engine-droop": {"share": 0.2},
     "hull-asymmetry": {"Y_0": 0.002, "N_0": -0.0004},
     "hull-term": {"N_rabsr": -0.01, "Y_vvv": 0.1, "X_absr": 0.01},
@@ -62,7 +62,7 @@ STRONG = {
     "position-latency": {"seconds": 1.5, "with_velocity": 1.0},
     "velocity-filter": {"over_ground": 4.0, "along_axes": 2.0, "yaw_rate": 3.0, "ahead": 1.5},
     "heading-filter": {"time_constant": 2.0, "alone": 1.0},
-    "gyro-drift": {"heading": 3e-4, "heading_alone": -2e-4, "yaw_rate": 1e-6},
+    "gyro-drift": {"heading": 3e-4, "heading_alone": -2e-4, "yaw_rate": 1e-6, "settles": 300.0},
 }
 TAGS = [effect.tag for effect in effects()]
 

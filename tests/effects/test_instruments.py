@@ -121,6 +121,14 @@ def test_a_gyro_drifts_from_the_first_sample_on():
     np.testing.assert_allclose(found.r, (fine.r + 1e-5 * t)[EVERY], atol=1e-12)
 
 
+def test_a_gyro_that_settles_comes_to_rest():
+    t, fine, samples = way()
+    found = logged("gyro-drift", samples, heading_alone=0.002, settles=40.0)
+    np.testing.assert_allclose(found.psi, (fine.psi + 0.08 * (1.0 - np.exp(-t / 40.0)))[EVERY], atol=1e-12)
+    even = logged("gyro-drift", samples, heading_alone=0.002, settles=1e9)
+    np.testing.assert_allclose(even.psi, (fine.psi + 0.002 * t)[EVERY], atol=1e-7)
+
+
 @pytest.mark.parametrize("effect", [e for e in effects() if isinstance(e, FilterEffect)], ids=lambda e: e.tag)
 def test_what_is_logged_of_a_steady_motion_leads_back(effect):
     """And goes on as it began: a steady turn by small steps leaves the instrument where ``settled`` puts it."""

@@ -53,8 +53,8 @@ forces and to values that differ from run to run and bend to all that is left, o
 to what there is; and, to such a term, any cause that is no error of a log: engines give way by laws of their own."""
 
 FORM_OF_HULL = 0.05
-"""Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it, and to a force of wind or
-waves of another such force: formulas of shallow water, winds and waves differ by a fifth, and what one leaves of the
+"""Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it, and to a force of wind
+or waves of another such force: formulas of shallow water, winds and waves differ by a fifth, and what one leaves of the
 other is a term, or a light wind."""
 
 HARDLY_SEEN = 0.005

@@ -22,8 +22,8 @@ AS_MUCH, AS_LITTLE = 0.97, 0.9
 values of another that differ between runs: these bend to an effect whose form is a little off."""
 
 OF_FORMULA = 0.001
-"""Share of the fall of chi-squared that another may bring less, where both are forces of wind and waves: as much is left
-by a formula that is 3 % off, and these differ by more from ship to ship."""
+"""Share of the fall of chi-squared that another may bring less, where both are forces of wind and waves: as much is
+left by a formula that is 3 % off, and these differ by more from ship to ship."""
 
 AKIN = 0.3
 """Share of the fall of chi-squared from which on an effect that acts much like the best may be meant."""

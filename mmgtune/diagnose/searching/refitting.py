@@ -9,6 +9,8 @@ from functools import partial
 
 import numpy as np
 
+from ...fitting.box import parameter_of
+from ...profile import scale_of
 from ..bench.hypotheses import Hypothesis
 from ..bench.workbench import Point, Workbench
 from ..signatures.beside import free_with, kept_free, origin
@@ -66,6 +68,7 @@ class Refitting:
         fitted += self._fitted(shortlist.of_runs(order, [end for _, end in fitted], quick=quick))
         fitted += self._fitted(akin(order, fitted))
         fitted = [(score, self._beside_fewer(score, end, fitted)) for score, end in fitted]
+        fitted = [(score, end) for score, end in fitted if self._may_be_of_runs(score.hypothesis, end)]
         asked = [s.hypothesis for s in ranked]
         chance = None if quick else ChanceScores(refitter.linear, asked, refitter.bench.options.seed)
         n_terms = max(1, sum(s.hypothesis.effect.one_of_many for s in ranked))
@@ -122,6 +125,18 @@ class Refitting:
             end = min([end, *refitter.steps(begun, score, starts, MOST_STEPS)], key=lambda one: one.chi2)
             refitter.known.ends[asked.names] = end
         return end
+
+    def _may_be_of_runs(self, hypothesis: Hypothesis, end: Point) -> bool:
+        """Whether values of runs are such as runs may have, each by itself; of any other whether it is one."""
+        bench = self.refitter.bench
+        values, scale = bench.values(end), scale_of(bench.model.profile)
+        for name in hypothesis.names if hypothesis.by else ():
+            parameter = parameter_of(bench.model, name)
+            assert parameter is not None  # hypotheses are of effects
+            low, high = parameter.of_run(scale) if parameter.of_run else (-np.inf, np.inf)
+            if not low <= values[name] <= high:
+                return False
+        return True
 
     def _continue(self, chosen: Sequence[Score], ends: list[Point], going: Sequence[int], steps: int) -> None:
         """Continue some of the refits, in their place among ``ends``."""
