@@ -310,8 +310,9 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
     read, log_map = _records(log, log_map)
     records = [part for record in read for part in cut_at_jumps(record, log_map, step)]
     made: list[Piece] = []
+    runs: list[int] = []
     short = 0
-    for record in records:
+    for run, record in zip(_runs(records), records, strict=True):
         if len(records) > 1 and max(len(one.t) for one in record.series.values()) < FEWEST:
             short += 1
             continue
@@ -320,6 +321,7 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
             if made:
                 pieces[0] = replace(pieces[0], cut=pieces[0].cut or "its time jumps")
             made += pieces
+            runs += [run] * len(pieces)
         except LogError:
             # A few seconds between two settings of a clock are no trial; a whole log that is none is an error.
             if len(records) == 1 or max(len(one.t) for one in record.series.values()) > FEWEST:
@@ -332,10 +334,12 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
     name = _name(log_map, log)
     found = []
     count = sum(not piece.follows for piece in made)
-    cut_from = name if len(made) > 1 else ""
     number = 0
-    for piece in made:
+    first: dict[int, str] = {}
+    for run, piece in zip(runs, made, strict=True):
         number += not piece.follows
+        of_run = first.setdefault(run, name if len(set(runs)) == 1 else f"{name}_{number}")
+        cut_from = of_run if runs.count(run) > 1 else ""
         id = name if count == 1 else f"{name}_{number}"
         notes = list(piece.notes)
         if count > 1:
@@ -348,6 +352,27 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
             ]
         found.append(_trial(f"{id}_{piece.follows}" if piece.follows else id, piece, notes, log_map, cut_from))
     return found
+
+
+AGAIN = 0.1
+"""Share of the time of a part of a log within which the next one begins again where it is another run."""
+
+
+def _runs(records: Sequence[Record]) -> list[int]:
+    """The run that each part of a log is of: where its time jumps forward by far, or begins again, a run has ended; a
+    clock that is set in between ends none."""
+    spans = [_span(record) for record in records]
+    ended = [
+        next_one[0] > one[1] or next_one[0] < one[0] + AGAIN * (one[1] - one[0])
+        for one, next_one in itertools.pairwise(spans)
+    ]
+    return [0, *itertools.accumulate(map(int, ended))]
+
+
+def _span(record: Record) -> tuple[float, float]:
+    """First and last time of a record [s]."""
+    times = [one.t for one in record.series.values() if len(one.t)]
+    return min((float(t[0]) for t in times), default=0.0), max((float(t[-1]) for t in times), default=0.0)
 
 
 def _records(log: Path, log_map: LogMap) -> tuple[list[Record], LogMap]:

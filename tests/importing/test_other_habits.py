@@ -10,6 +10,7 @@ import pytest
 
 from mmgtune.importing import import_logs, propose_map
 from mmgtune.importing.cells.stopwatch import of_day, times_told
+from mmgtune.importing.proposing.bearings import _counts_against
 
 from .made import close, imported, logged, suzaku, turn, with_sides, write_csv
 
@@ -64,6 +65,19 @@ def test_degrees_that_count_to_the_west(tmp_path: Path, name: str) -> None:
     assert proposal.guesses["delta"].keys["positive"] == "starboard"
     found = imported(log, proposal.text)
     assert np.corrcoef(found.y, turn().y)[0, 1] > 0.999
+
+
+@pytest.mark.parametrize(
+    ("quantity", "name", "against"),
+    [
+        ("longitude", "LON (deg W)", True), ("longitude", "Longitude_W", False), ("longitude", "lon [°W]", True),
+        ("longitude", "Lon E/W", False), ("longitude", "Longitude (west)", True), ("longitude", "Longitude", False),
+        ("latitude", "LAT (N/S)", False), ("latitude", "Lat S", True), ("latitude", "Latitude South", True),
+        ("latitude", "lats", False), ("x", "S", False),
+    ],
+)  # fmt: skip
+def test_sides_that_names_say(quantity: str, name: str, against: bool) -> None:
+    assert _counts_against(quantity, name) == against
 
 
 def test_a_compass_that_would_count_counterclockwise_is_doubted(tmp_path: Path) -> None:

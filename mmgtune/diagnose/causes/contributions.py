@@ -487,7 +487,7 @@ def _form_of_others(found: Found, cause: Hypothesis) -> float:
 
 def _of_weather(effect: Effect) -> bool:
     """Whether it is a force of wind or waves, found or measured."""
-    return unsteady(effect) or bool({*effect.of_measured.values()} & {"wind", "wave"})
+    return isinstance(effect, ForceEffect) and (unsteady(effect) or "wave" in effect.of_measured.values())
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:

@@ -91,7 +91,7 @@ def tracks(
     rates = _rates(moving, slopes, means)
     whole = {a for a, _ in rates}
     found: dict[Track, tuple[float, str]] = {}
-    against = {k for k in among if said[k] in _AGAINST and _AGAINST[said[k]].search(sample.names[k])}
+    against = {k for k in among if _counts_against(said[k], sample.names[k])}
     # Revolutions, speeds and rates follow a turning ship too, well enough to pass for the position that is missing.
     places = [k for k in moving if not _is(units_said[k], *_NO_PLACES)]
     for i, j in itertools.combinations(places, 2):
@@ -113,11 +113,20 @@ def tracks(
 
 
 _PLACES = ("x", "y", "latitude", "longitude")
-_AGAINST = {"latitude": re.compile(r"\b(S|deg ?S|south|süd|sud|sur)\b|°S", re.IGNORECASE),
-            "longitude": re.compile(r"\b(W|deg ?W|west|ouest|oeste)\b|°W", re.IGNORECASE)}  # fmt: skip
-"""What names of latitudes and longitudes say that count to the south and to the west."""
+_SIDES = {
+    "latitude": (re.compile(r"\bS\b|south|süd|\bsud\b|\bsur\b"), re.compile(r"\bN\b|nor[td]")),
+    "longitude": (re.compile(r"\bW\b|west|ouest|oeste"), re.compile(r"\b[EO]\b|east|\best|\bost")),
+}
+"""What names of latitudes and longitudes say that count to the south and to the west, and to the north and the east."""
 _NO_PLACES = ("1/s", "m/s", "rad/s")
 """Units of no position."""
+
+
+def _counts_against(quantity: str, name: str) -> bool:
+    """Whether a name says that a latitude or longitude counts to the south or the west, and to no other side."""
+    text = re.sub(r"(?<=°)(?=\w)", " ", name[:200])
+    found = [bool(one.search(text) or one.search(text.lower())) for one in _SIDES.get(quantity, ())]
+    return found == [True, False]
 
 
 def _is(unit: str, *kinds: str) -> bool:
