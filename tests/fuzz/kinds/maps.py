@@ -57,6 +57,7 @@ FITTING = (
     ("columns.x", 'column = "north"\nunit = "m"\nrecover', ('"print-resolution"',)),
     ("columns.psi", 'column = "heading"\nunit = "deg"\nrecover', ('"yaw-rate"',)),
     ("columns.delta", 'column = "rudder"\nunit = "deg"\nscale', ("1.0", "1e-9", "-1", "1e300")),
+    ("columns.delta", 'column = "rudder"\nunit = "deg"\nlate', ('"1.5 s"', '"-40 s"', '"1e9 s"', '"inf s"', "5")),
     ("columns.latitude", 'column = "rudder"\nminutes', (f'"ahead"{LONGITUDE}', f'"heading"{LONGITUDE}', '"north"')),
     ("columns.latitude", 'column = "ahead"\nhemisphere', (f'"rudder"{LONGITUDE}', f"3{LONGITUDE}")),
     ("columns.latitude", 'column = "ahead"\nunit', (f'"ddmm"{LONGITUDE}', f'"ddmm"\nhemisphere = "rudder"{LONGITUDE}')),
