@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...fitting.box import parameter_of
 from ..bench.workbench import Workbench
 from ..causes.cause import Detectability
 from ..searching.look import Step
@@ -61,8 +60,7 @@ def told_apart(linear: Linear, names: Sequence[str]) -> float:
 
 def _limit(bench: Workbench, name: str, sizes: float) -> float | None:
     """Value of a parameter at ``sizes`` typical sizes from its null; None where no value of its range is that far."""
-    parameter = parameter_of(bench.model, name)
-    assert parameter is not None  # asked of parameters of effects only
+    parameter = bench.parameter(name)
     i = bench.box.names.index(name)
     if any(i == direction for _, direction in bench.box.polar):
         return None

@@ -13,8 +13,8 @@ import numpy as np
 from ...arrays import FloatArray, IntArray
 from ...backends import STATES, Integrator, get_backend
 from ...components import split_name
-from ...effects import Visited, effect_tags
-from ...fitting.box import Box, base_of, choose_targets, group_of, make_box
+from ...effects import Parameter, Visited, effect_tags
+from ...fitting.box import Box, base_of, choose_targets, group_of, make_box, parameter_of
 from ...fitting.least_squares import LeastSquaresResult, solve
 from ...fitting.one_sided import followers, tied
 from ...fitting.problem import FitProblem
@@ -167,6 +167,12 @@ class Workbench:
     def sub_box(self, names: Sequence[str]) -> Box:
         """The box of some of its names, in their order."""
         return self.box.part(names)
+
+    def parameter(self, name: str) -> Parameter:
+        """A parameter of an effect by its name."""
+        found = parameter_of(self.model, name)
+        assert found is not None  # asked of parameters of effects only
+        return found
 
     def problem_of(self, names: Sequence[str], integrator: Integrator | None = None) -> FitProblem:
         """The problem of fitting ``names``, everything else at its value in the profile."""

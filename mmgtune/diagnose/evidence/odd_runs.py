@@ -10,11 +10,11 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...evaluation import TrialRecord, evaluate
-from ...inputs import INPUTS
 from ...profile import ShipProfile
 from ...trial import Trial
 from ...trial.kinematics import FITS, lever_of, stretch_of
 from ...trial.model import fields_of
+from ...trial.schema import RUDDERS
 from .misread import POSITION, RUDDER, Misread, both, without
 
 TELLS = 0.1
@@ -86,8 +86,8 @@ def off_track_in(
 
 def with_rudders_turned(trial: Trial) -> Trial:
     """The trial with the other sign of all rudder angles."""
-    rudders = [name for name in trial.columns if name in INPUTS and INPUTS[name].role == "rudder"]
-    return replace(trial, **fields_of({**trial.columns, **{name: -trial.columns[name] for name in rudders}}))
+    turned = {name: -trial.columns[name] for name in RUDDERS if name in trial.columns}
+    return replace(trial, **fields_of({**trial.columns, **turned}))
 
 
 def _few(doubtful: Collection[str], trials: Mapping[str, Trial]) -> bool:

@@ -9,7 +9,6 @@ from functools import partial
 
 import numpy as np
 
-from ...fitting.box import parameter_of
 from ...profile import scale_of
 from ..bench.hypotheses import Hypothesis
 from ..bench.workbench import Point, Workbench
@@ -128,13 +127,13 @@ class Refitting:
 
     def _may_be_of_runs(self, hypothesis: Hypothesis, end: Point) -> bool:
         """Whether values of runs are such as runs may have, each by itself; of any other whether it is one."""
+        if not hypothesis.by:
+            return True
         bench = self.refitter.bench
         values, scale = bench.values(end), scale_of(bench.model.profile)
-        for name in hypothesis.names if hypothesis.by else ():
-            parameter = parameter_of(bench.model, name)
-            assert parameter is not None  # hypotheses are of effects
-            low, high = parameter.of_run(scale) if parameter.of_run else (-np.inf, np.inf)
-            if not low <= values[name] <= high:
+        for name in hypothesis.names:
+            of_run = bench.parameter(name).of_run
+            if of_run is not None and not of_run(scale)[0] <= values[name] <= of_run(scale)[1]:
                 return False
         return True
 

@@ -227,8 +227,7 @@ def inwards(null: FloatArray) -> FloatArray:
 
 def typical(bench: Workbench, name: str) -> float:
     """A typical size of a parameter as a step in the unit cube."""
-    parameter = parameter_of(bench.model, name)
-    assert parameter is not None  # asked of parameters of effects only
+    parameter = bench.parameter(name)
     name = base_of(name)
     i = bench.box.names.index(name)
     size = {direction: first for first, direction in bench.box.polar}.get(i)
@@ -241,12 +240,8 @@ def far_from_null(bench: Workbench, names: Sequence[str]) -> list[FloatArray]:
     """Places (n_names,) in the unit cube far from the null of a single parameter; none of several."""
     if len(names) > 1:
         return []
-    (name,) = names
-    parameter = parameter_of(bench.model, name)
-    assert parameter is not None  # asked of parameters of effects only
-    i = bench.box.names.index(base_of(name))
-    values = np.array(parameter.far(scale_of(bench.model.profile)))
-    return [np.array([z]) for z in ((values - bench.box.low[i]) / bench.box.width[i]).tolist()]
+    far = bench.parameter(names[0]).far(scale_of(bench.model.profile))
+    return [bench.sub_box(names).to_unit([value]) for value in far]
 
 
 @dataclass(eq=False)

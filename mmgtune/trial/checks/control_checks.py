@@ -10,7 +10,7 @@ from ...arrays import BoolArray, FloatArray
 from ...inputs import INPUTS, Role
 from ...units import DEG
 from ..model import Trial
-from ..schema import MAIN_INPUTS, directions
+from ..schema import MAIN_INPUTS, RUDDERS, directions
 from .finding import Finding, Rescale
 from .motion_checks import spikes_of
 
@@ -100,7 +100,7 @@ def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
 
 def _steering(trial: Trial) -> BoolArray:
     """Samples at which no rudder is as far over as only those do that brake: turned outward, a pair steers little."""
-    rudders = [values for name, values in inputs_of(trial).items() if INPUTS[name].role == "rudder"]
+    rudders = [trial.columns[name] for name in RUDDERS if name in trial.columns]
     return np.asarray(np.max(np.abs(rudders), axis=0) < BRAKING)
 
 

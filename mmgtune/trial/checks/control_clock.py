@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import FloatArray
-from ...inputs import INPUTS
+from ...physics.following import followed
 from ...units import DEG
 from ..model import Trial
+from ..schema import RUDDERS
 from .finding import Finding, Shift
 
 LEAST_RUDDER = 4.0 * DEG
@@ -34,7 +35,7 @@ def clock_findings(trial: Trial, where: str) -> list[Finding]:
     if found is None:
         return []
     shift, left, as_logged = found
-    rudders = ", ".join(f"'{name}'" for name in rudders_of(trial))
+    rudders = ", ".join(f"'{name}'" for name in RUDDERS if name in trial.columns)
     side = "after" if shift > 0.0 else "before"
     return [
         Finding(
@@ -48,11 +49,6 @@ def clock_findings(trial: Trial, where: str) -> list[Finding]:
     ]
 
 
-def rudders_of(trial: Trial) -> list[str]:
-    """Names of the rudder angles a trial has."""
-    return [name for name in trial.columns if name in INPUTS and INPUTS[name].role == "rudder"]
-
-
 def shift_of(trial: Trial) -> tuple[float, float, float] | None:
     """By how much later than logged [s] the rudder acts, with the share of the variance of the yaw rate that following
     it then leaves, and as logged; None where that is no more than her steering gear may take, or does not show.
@@ -60,7 +56,7 @@ def shift_of(trial: Trial) -> tuple[float, float, float] | None:
     The yaw rate follows the rudder with a lag of first order (assumption), of whichever time constant fits best.
     """
     known = np.isfinite(trial.r)
-    rudder = np.mean([trial.columns[name] for name in rudders_of(trial)], axis=0)
+    rudder = np.mean([trial.columns[name] for name in RUDDERS if name in trial.columns], axis=0)
     if not np.isfinite(rudder).all() or known.mean() < KNOWN or np.ptp(rudder) < LEAST_RUDDER:
         return None
     duration = float(trial.t[-1] - trial.t[0])
@@ -72,15 +68,15 @@ def shift_of(trial: Trial) -> tuple[float, float, float] | None:
         return None
     times = np.geomspace(2.0 * step, 0.25 * duration, TIMES)
     rudder = np.interp(t, trial.t, rudder)
-    followed = _followed(rudder, step, times)
+    answers = _answers(rudder, step, times)
     span = duration / 3.0
     shifts = np.linspace(-span, span, 2 * SHIFTS + 1)
-    left, sides = _left(t, rate, followed, np.append(shifts, 0.0))
+    left, sides = _left(t, rate, answers, np.append(shifts, 0.0))
     as_logged = float(left[:, -1].min()) / variance
     left = np.where(sides > 0.0, left, np.inf)
     near = shifts[int(np.argmin(left[:, :-1].min(axis=0)))]
     finer = near + np.linspace(-span, span, 2 * FINER + 1) / SHIFTS
-    left, sides = _left(t, rate, followed, finer)
+    left, sides = _left(t, rate, answers, finer)
     left = np.where(sides > 0.0, left, np.inf)
     which, k = np.unravel_index(int(np.argmin(left)), left.shape)
     shift, least = float(finer[k]), float(left[which, k]) / variance
@@ -90,23 +86,22 @@ def shift_of(trial: Trial) -> tuple[float, float, float] | None:
     return (shift, least, as_logged) if shows else None
 
 
-def _followed(rudder: FloatArray, step: float, times: FloatArray) -> FloatArray:
+def _answers(rudder: FloatArray, step: float, times: FloatArray) -> FloatArray:
     """(n_times, n_samples) what follows the rudder with lags of first order."""
-    share = -np.expm1(-step / times)
     found = np.empty((len(times), len(rudder)))
     found[:, 0] = rudder[0]
     for k in range(1, len(rudder)):
-        found[:, k] = found[:, k - 1] + share * (rudder[k] - found[:, k - 1])
+        found[:, k] = followed(rudder[k - 1], rudder[k], found[:, k - 1], step, times)
     return found
 
 
-def _left(t: FloatArray, rate: FloatArray, followed: FloatArray, shifts: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _left(t: FloatArray, rate: FloatArray, answers: FloatArray, shifts: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(n_times, n_shifts) variances of the yaw rate that each lag of the rudder leaves where it acts later by a shift,
     and the gains with which it fits."""
     at = np.clip((t - shifts[:, None] - t[0]) / (t[1] - t[0]), 0.0, len(t) - 1.0)
     before = np.minimum(at.astype(np.int64), len(t) - 2)
     share = at - before
-    shifted = (1.0 - share) * followed[:, before] + share * followed[:, before + 1]
+    shifted = (1.0 - share) * answers[:, before] + share * answers[:, before + 1]
     shifted -= shifted.mean(axis=-1, keepdims=True)
     along = shifted @ (rate - rate.mean()) / len(t)
     size = np.maximum(np.mean(shifted**2, axis=-1), 1e-300)
