@@ -18,6 +18,7 @@ import signal
 import sys
 from contextlib import redirect_stdout
 from importlib import import_module
+from pkgutil import walk_packages
 from runpy import run_module
 
 SECONDS = 300
@@ -25,16 +26,21 @@ SECONDS = 300
 
 IMPORTED = (
     "cma", "matplotlib.backends.backend_pdf", "matplotlib.backends.backend_svg", "matplotlib.figure", "pandas",
-    "pyarrow.parquet", "scipy.interpolate", "scipy.linalg", "scipy.optimize", "scipy.stats", "mmgtune.checking",
-    "mmgtune.report.pages.fit_page",
+    "pyarrow.parquet", "scipy.interpolate", "scipy.linalg", "scipy.optimize", "scipy.stats",
 )  # fmt: skip
+"""Libraries that commands import on their way."""
+
+LEFT = ("mmgtune.__main__", "mmgtune.backends.jax_math")
+"""Of the program what runs when it is imported, and what starts threads, which a child would not have."""
 
 
 def _warm() -> None:
     """Import what commands import on their way, and read the compiled simulator that most of them use."""
-    for name in IMPORTED:
-        import_module(name)
     import mmgtune.cli
+
+    own = (module.name for module in walk_packages(mmgtune.__path__, "mmgtune."))
+    for name in (*IMPORTED, *(name for name in own if name not in LEFT)):
+        import_module(name)
 
     with redirect_stdout(io.StringIO()):
         mmgtune.cli.app(["validate", "suzaku", "trials/suzaku/turn_p10.parquet"], standalone_mode=False)

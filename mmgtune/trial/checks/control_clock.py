@@ -14,8 +14,9 @@ from .finding import Finding, Shift
 LEAST_RUDDER = 4.0 * DEG
 """Range of rudder angles below which no turn follows from them."""
 
-STEPS, TIMES, SHIFTS, FINER = 1000, 12, 60, 10
-"""Samples that a run is looked at with; time constants that are tried, shifts to each side, and parts of one after."""
+STEPS, TIMES, SHIFTS, FINER, COARSE = 1000, 12, 60, 10, 4
+"""Samples that a run is looked at with; time constants that are tried, shifts to each side, and parts of one after, for
+which all samples are looked at: of so many one before."""
 
 KNOWN = 0.9
 """Share of yaw rates that must be measured."""
@@ -69,12 +70,14 @@ def shift_of(trial: Trial) -> tuple[float, float, float] | None:
     times = np.geomspace(2.0 * step, 0.25 * duration, TIMES)
     rudder = np.interp(t, trial.t, rudder)
     answers = _answers(rudder, step, times)
+    as_logged = float(_left(t, rate, answers, np.zeros(1))[0].min()) / variance
+    if as_logged <= MISSES:
+        return None
     span = duration / 3.0
     shifts = np.linspace(-span, span, 2 * SHIFTS + 1)
-    left, sides = _left(t, rate, answers, np.append(shifts, 0.0))
-    as_logged = float(left[:, -1].min()) / variance
+    left, sides = _left(t, rate, answers, shifts, COARSE)
     left = np.where(sides > 0.0, left, np.inf)
-    near = shifts[int(np.argmin(left[:, :-1].min(axis=0)))]
+    near = shifts[int(np.argmin(left.min(axis=0)))]
     finer = near + np.linspace(-span, span, 2 * FINER + 1) / SHIFTS
     left, sides = _left(t, rate, answers, finer)
     left = np.where(sides > 0.0, left, np.inf)
@@ -82,27 +85,35 @@ def shift_of(trial: Trial) -> tuple[float, float, float] | None:
     shift, least = float(finer[k]), float(left[which, k]) / variance
     over = step * float(np.ptp(rudder) / np.abs(np.diff(rudder)).max())
     enough = max(3.0 * step, over, BEYOND * float(times[which]))
-    shows = least < FOLLOWS and as_logged > max(MISSES, BETTER * least) and abs(shift) > enough
+    shows = least < FOLLOWS and as_logged > BETTER * least and abs(shift) > enough
     return (shift, least, as_logged) if shows else None
 
 
 def _answers(rudder: FloatArray, step: float, times: FloatArray) -> FloatArray:
     """(n_times, n_samples) what follows the rudder with lags of first order."""
-    found = np.empty((len(times), len(rudder)))
-    found[:, 0] = rudder[0]
-    for k in range(1, len(rudder)):
-        found[:, k] = followed(rudder[k - 1], rudder[k], found[:, k - 1], step, times)
-    return found
+    of_before = followed(0.0, 0.0, 1.0, step, times)
+    of_rudder = followed(rudder[:-1, None], rudder[1:, None], 0.0, step, times)
+    found = np.empty((len(rudder), len(times)))
+    found[0] = rudder[0]
+    for k, added in enumerate(of_rudder):  # a step is linear in what was before it
+        found[k + 1] = of_before * found[k] + added
+    return found.T
 
 
-def _left(t: FloatArray, rate: FloatArray, answers: FloatArray, shifts: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _left(
+    t: FloatArray, rate: FloatArray, answers: FloatArray, shifts: FloatArray, every: int = 1
+) -> tuple[FloatArray, FloatArray]:
     """(n_times, n_shifts) variances of the yaw rate that each lag of the rudder leaves where it acts later by a shift,
-    and the gains with which it fits."""
-    at = np.clip((t - shifts[:, None] - t[0]) / (t[1] - t[0]), 0.0, len(t) - 1.0)
+    and the gains with which it fits.
+
+    every  of how many samples one is looked at
+    """
+    at = np.clip((t[::every] - shifts[:, None] - t[0]) / (t[1] - t[0]), 0.0, len(t) - 1.0)
+    rate = rate[::every]
     before = np.minimum(at.astype(np.int64), len(t) - 2)
     share = at - before
     shifted = (1.0 - share) * answers[:, before] + share * answers[:, before + 1]
     shifted -= shifted.mean(axis=-1, keepdims=True)
-    along = shifted @ (rate - rate.mean()) / len(t)
+    along = shifted @ (rate - rate.mean()) / len(rate)
     size = np.maximum(np.mean(shifted**2, axis=-1), 1e-300)
     return np.var(rate) - along**2 / size, along / size
