@@ -2,11 +2,12 @@
 
 import importlib
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.bench.hypotheses import Hypothesis, hypotheses
+from mmgtune.diagnose.bench.hypotheses import Hypothesis, hypotheses, of_runs
 from mmgtune.diagnose.bench.workbench import make_workbench
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.searching.instead import Instead, instead_of_tuning
@@ -21,6 +22,7 @@ from tests.hidden.plant import TUNING, WHITE, simulate, write
 search = importlib.import_module("mmgtune.diagnose.searching.search")  # the package has a function of that name
 
 TAGS = ("shallow-water", "loading", "rudder-gain", "rpm-scale", "current", "resistance")
+FEW = ("hull.R_0", "wake.w_P0", "rudder.eps")
 HULL = ("hull.*", "wake.w_P0", "rudder.gamma_Rp", "rudder.gamma_Rn", "rudder.eps")
 
 
@@ -78,3 +80,27 @@ def test_a_current_keeps_its_rates_where_it_changes(tmp_path, rate, left):
     (cause,) = found.causes
     assert cause.variant == (left or richest.variant)
     assert set(found.final.names) == {*base.names, *cause.names}
+
+
+def test_runs_of_two_days_whose_values_are_those_of_the_day(tmp_path):
+    """A compass that deviated made a current of two days differ from run to run; that it then was one of each day was
+    not asked again."""
+    waters = {"day 1": {"north": 0.15, "east": -0.1}, "day 2": {"north": -0.1, "east": 0.1}}
+    day_of = {name: f"day {1 + k % 2}" for k, name in enumerate(sorted(TUNING))}
+    write(simulate({}, {}, seed=3, of_trial={name: {"current": waters[day_of[name]]} for name in TUNING}), tmp_path)
+    trials = [replace(one, group=day_of[one.id]) for one in load_trials(tmp_path).trials.values() if one.id in TUNING]
+    (plain,) = (Hypothesis(find_effect("current"), one) for one in find_effect("current").variants if len(one) == 2)
+    finest, days = of_runs([plain], trials)
+    options = DiagnoseOptions(effects=("current",), targets=FEW)
+    names = list(plain.names)
+    bench = make_workbench(load_profile("suzaku"), trials, options, names)
+    base = base_fit(bench)
+    start = np.concatenate([base.unit, bench.null(finest.names)])
+    spreads = {f"{base}@trial": 0.05 for base in finest.bases}
+    point = bench.refit((*base.names, *finest.names), start[:, None], base.offsets, spreads=spreads)
+    found = Found(base, point, [finest])
+    search._make_plain(bench, found, [plain, finest, days])
+    assert found.causes == [days]
+    values = bench.values(found.final)
+    assert values["effects.current.north@group:day 1"] == pytest.approx(0.15, abs=0.01)
+    assert values["effects.current.east@group:day 2"] == pytest.approx(0.1, abs=0.01)

@@ -50,6 +50,13 @@ def name_of(label: str) -> str:
     return label.partition(":")[2]
 
 
+def within(name: str, other: str, trials: Sequence[Trial]) -> bool:
+    """Whether one is the same coefficient as another, of all runs or of a group that runs of its own are in."""
+    own, others = group_of(name), group_of(other)
+    shared = not others or any({own, others} <= labels_of(trial) for trial in trials)
+    return base_of(name) == base_of(other) and shared
+
+
 def between(names: Sequence[str], spreads: Mapping[str, float]) -> FloatArray | None:
     """(n_rows, n_names) rows whose squares say how unlike values of groups are, over their spread; None for none.
 

@@ -18,7 +18,7 @@ from ...fitting.box import AT
 from ...phrases import listed
 from ...trial import Trial, visited_by
 from ...units import DIMENSIONLESS, NORMAL_95
-from ..bench.runs import IN_WORDS, groups_of, name_of
+from ..bench.runs import FEWEST_GROUPS, IN_WORDS, groups_of, name_of
 from ..signatures.intervals import Estimate
 from ..signatures.wording import error_in_words, quantity, range_in_words
 
@@ -228,6 +228,9 @@ class ByRun:
         sizes = [self.size(k)[0] for k in shown]
         others = len(self.groups) - len(shown)
         text = f"The {subject} differed from {word} to {word}: "
+        if self.by == "group" and len(shown) == len(self.groups) == FEWEST_GROUPS and not self._much_alike:
+            each = listed([self._told_of(k) for k in shown])
+            return text + self._number_of + each + self._within() + self._doubted
         if self._much_alike:
             text = f"The {subject} was much the same in each {word}: "
         if len(shown) == 1 and others:
@@ -241,6 +244,12 @@ class ByRun:
             several = [name_of(self.groups[k]) for k in shown]
             text += f" in {listed(several, 4)}, and none for certain in the other {others}" if others else ""
         return text + self._all_towards(shown) + self._within() + self._doubted
+
+    def _told_of(self, k: int) -> str:
+        """Size, direction and name of a group, in words."""
+        value, error = self.size(k)
+        size = quantity(value, None if error is None else NORMAL_95 * error, self.unit) + self._of_what
+        return f"{size}{self._all_towards([k]).removeprefix(',')} in {name_of(self.groups[k])}"
 
     def _each_known_to(self, shown: Sequence[int]) -> str:
         """The error of values that are much the same, where it is larger than they differ by; else ""."""

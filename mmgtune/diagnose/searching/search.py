@@ -12,11 +12,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ...fitting.box import base_of
+from ...fitting.box import AT, base_of
 from ...fitting.lost import require_simulated
 from ...hooks import Phase
 from ...trial import Held
 from ..bench.hypotheses import Hypothesis, n_terms
+from ..bench.runs import within
 from ..bench.workbench import Point, Workbench
 from .base_fit import PRECISE, base_fit, unnoticed
 from .look import Step, finer, fitted_beside, look, look_again
@@ -230,13 +231,19 @@ def _make_alike(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> 
 
 
 def _as_special(bench: Workbench, point: Point, cause: Hypothesis, special: Hypothesis) -> Point:
-    """The point refitted with a special case in the place of a cause; one value for all begins at the mean of those of
-    each run."""
+    """The point refitted with a special case in the place of a cause; one value for all, or for a group of runs, begins
+    at the mean of those of each run."""
     gone = [name for name in cause.names if name not in special.names]
     if special.by == cause.by:
         return _exchanged(bench, point, gone)
     values = dict(zip(point.names, point.unit, strict=True))
-    mean = [float(np.mean([values[name] for name in cause.names if base_of(name) == base])) for base in special.names]
+    mean = [
+        float(np.mean([values[name] for name in cause.names if within(name, one, bench.trials)]))
+        for one in special.names
+    ]
+    if special.by:
+        known = {base: point.spreads[f"{base}{AT}{cause.by}"] for base in special.bases}
+        point = replace(point, spreads={**point.spreads, **{f"{base}{AT}{special.by}": known[base] for base in known}})
     return _exchanged(bench, point, gone, special.names, mean)
 
 
@@ -248,7 +255,7 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
         if (plainer := _in_plainer_form(bench, found, cause, hypotheses)) is not None:
             found.causes[found.causes.index(cause)], found.final = plainer
             continue
-        special = [one for one in hypotheses if one.by in (cause.by, "") and cause.holds(one)]
+        special = [one for one in hypotheses if cause.holds(one)]
         for one in sorted(special, key=lambda one: len(one.names)):
             fewer = _as_special(bench, found.final, cause, one)
             saved = (len(cause.names) - len(one.names)) * bench.price
