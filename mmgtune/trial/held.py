@@ -23,6 +23,9 @@ FEWEST = 4
 ALIKE = 0.25
 """Share by which they may differ; a sample more or less does not count."""
 
+UNEVEN = 3.0
+"""Times the least of them that they may be where no usual one shows: a network passes messages on as it can."""
+
 MOSTLY = 0.5
 """Share of them that must be alike: a rudder that stands still is logged as before for any time."""
 
@@ -108,7 +111,9 @@ def _usual(apart: IntArray) -> int:
     if len(apart) < FEWEST:
         return 0
     low = float(np.quantile(apart, 0.1))
-    alike = np.abs(apart - low) <= max(1.0, ALIKE * low)
-    if low < 2.0 or alike.mean() < MOSTLY:
+    if low < 2.0:
         return 0
-    return int(np.median(apart[alike]))
+    for alike in (np.abs(apart - low) <= max(1.0, ALIKE * low), apart <= UNEVEN * low):
+        if alike.mean() >= MOSTLY:
+            return int(np.median(apart[alike]))
+    return 0

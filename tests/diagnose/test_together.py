@@ -60,7 +60,10 @@ def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, ve
 def test_what_all_trials_were_looked_at_for_must_be_told_by_the_others(share, most, by_run, untold):
     gain = SimpleNamespace(share_removed=share, surely_removed=share, tells_most_runs=most, leaves_beside=lambda: True)
     causes = (SimpleNamespace(runs="of each" if by_run else None),)
-    assert belief_with(gain=gain, causes=causes, together=SimpleNamespace(settled=True))._told_by_none is untold
+    found = {"causes": causes, "contributions": (("current", None),), "together": SimpleNamespace(settled=True)}
+    assert belief_with(gain=gain, **found)._told_by_none is untold
+    read = belief_with(gain=gain, **found | {"contributions": ()})
+    assert not read._told_by_none  # a log that holds its values: nothing was fitted, and the model without is read so too
 
 
 @dataclass(frozen=True)

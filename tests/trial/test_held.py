@@ -49,6 +49,20 @@ def test_held_values_are_seen_and_read_at_their_updates(noise):
         assert np.all(np.diff(at) > 0)
 
 
+def test_values_that_came_at_odd_times_are_seen_as_held():
+    """A network passed them on after three to eight samples: no two updates were as far apart as the usual ones."""
+    rng = np.random.default_rng(4)
+    at = np.unique(np.minimum(np.cumsum(rng.integers(3, 9, 200)), 400))
+    held = np.repeat(np.append(0, at), np.diff([0, *at, 401]))
+    true = [moved(later) for later in (0.0, 2.0, 5.0)]
+    trials = made(*(one[held] for one in true))
+    found = Held.of(trials)
+    assert found is not None
+    for trial, one in zip(trials, true, strict=True):
+        read = found.evenly(trial).delta
+        assert np.sqrt(np.mean((read - one) ** 2)) < 0.5 * np.sqrt(np.mean((trial.delta - one) ** 2))
+
+
 @pytest.mark.parametrize("step", [0.0, 0.1, 1.0], ids=["as measured", "tenths of a degree", "whole degrees"])
 def test_a_rudder_logged_all_along_holds_nothing(step):
     true = [moved(later) for later in (0.0, 2.0, 5.0)]

@@ -97,10 +97,11 @@ def _of_causes(answer: Answer) -> str:
         return f"The search was stopped before its end, so nothing can be concluded. {told}"
     named = _of_the_named(answer)
     if all(cause.effect is None for cause in answer.causes):
-        before, after = answer.chi2
+        before, after = map(math.sqrt, answer.chi2)
+        digits = 2 if figures(before) != figures(after) else 3
         return (
             f"{named} With that put right no other cause shows: the error of the re-tuned model falls from "
-            f"{figures(math.sqrt(before))} to {figures(math.sqrt(after))} times the noise of the measurements."
+            f"{figures(before, digits)} to {figures(after, digits)} times the noise of the measurements."
         )
     named = _joined(named, clock_rate(answer.causes))
     gained = _joined(named, *_brought(answer))

@@ -191,7 +191,8 @@ class Belief:
         bends = self.differs_by_run and self.gain.leaves_beside()
         share = self.gain.share_removed
         untold = settled and share < TOLD and not self.gain.tells_most_runs
-        return bool(self.causes) and (untold or (bends and share < AT_ALL))
+        fitted = bool(self.contributions)  # how a log is read is no number that could stand for something else
+        return fitted and (untold or (bends and share < AT_ALL))
 
     @property
     def _excused_by_gusts(self) -> bool:
