@@ -412,11 +412,17 @@ def _not_refuted(result: Diagnosis, rivals: Sequence[Refit]) -> list[Refit]:
 
 
 def _explained(found: Found, before: Leftover, left: Leftover) -> float:
-    """Share of the error above the noise of the sensors on the trials looked at that the causes remove."""
+    """Share of the error above the noise of the sensors on the trials looked at that the causes remove.
+
+    What the logged inputs may have left open is error too where causes remove that: then the inputs did not.
+    """
     if not found.causes:
         return 0.0
-    whole = before.excess - (left.excess - left.unknown)
-    return 1.0 - max(left.unknown, 0.0) / whole if whole > 0.0 else 0.0
+    whole, rest = before.excess - (left.excess - left.unknown), max(left.unknown, 0.0)
+    removed = [1.0 - rest / whole] if whole > 0.0 else []
+    if (largest := whole + before.left_open) > 0.0:
+        removed.append(1.0 - (rest + left.left_open) / largest)
+    return max(removed, default=0.0)
 
 
 def _suggestion(bench: Workbench, found: Found, rivals: Sequence[Sequence[Refit]]) -> Suggestion | None:
