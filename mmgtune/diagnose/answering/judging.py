@@ -35,6 +35,7 @@ from ..result import Diagnosis
 from ..searching.instead import instead_of_tuning
 from ..searching.refit import WORTH, Refit, kin_among
 from ..searching.search import Found, rivals_of, step_of
+from ..signatures.at_ends import AtEnds
 from ..signatures.intervals import Estimate, estimates
 from ..signatures.retuned import retuned, unlike_any
 from ..voyages.difference import Difference
@@ -207,6 +208,7 @@ class Judge:
             differing=tuple(self.differing),
             doubted=doubted,
             more=found.more,
+            ends=AtEnds.of(bench, found.base, found.final),
             read_off=bench.read_off,
             unlike_any=unlike_any(retuned(bench, found.final)) if any(one.by for one in found.causes) else "",
             of_traces=self.of_traces if found.causes else 0.0,

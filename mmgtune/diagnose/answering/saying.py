@@ -69,6 +69,8 @@ def said(answer: Answer) -> Said:
         unknown = _of_the_unknown(answer)
         pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
         first, *why = [*pieces, unknown.why]
+        if answer.ends and not (answer.contradicted or answer.of_a_sensor):
+            why.append(answer.ends.sentence)
         return Said(apart + first, _joined(*why), unknown.leading, " ".join(more))
     if answer.verdict == "none":
         one = _of_none(answer)

@@ -15,6 +15,7 @@ from ..evidence.leftover import NOTICED, Leftover
 from ..held_out.gain import MOST, Gain
 from ..held_out.together import Together
 from ..searching.search import TOO_MANY
+from ..signatures.at_ends import AtEnds
 from .cause import Cause
 from .contributions import Contribution
 
@@ -94,6 +95,7 @@ class Belief:
     of_traces: float = 0.0
     unlike_any: str = ""
     more: bool = False
+    ends: AtEnds | None = None
 
     @property
     def rest(self) -> float:
@@ -121,6 +123,9 @@ class Belief:
             return "it leaves far more than noise, and more than gusts of such a wind, or groups of such waves, would"
         if why := self._bent:
             return why
+        if self.ends and self.ends.unlike and brought:
+            told = f"{len(self.ends.beside)} of {self.ends.targets} coefficients that are re-tuned"
+            return f"beside {'it' if len(brought) == 1 else 'them'} {told} end at the end of their range"
         surely = {tag for tag, one in self.contributions if one.seen > TOLD and len(brought) > 1}
         doubtful = [one for one in self.causes if not one.sized and one.tag not in surely]
         unsized = list(dict.fromkeys(one.tag for one in doubtful))
