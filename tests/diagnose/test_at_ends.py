@@ -1,4 +1,4 @@
-"""A ship unlike her profile in many ways: much of what is re-tuned ends at an end of its range, and causes are doubted."""
+"""A ship unlike her profile in many ways: much that is re-tuned ends at an end of its range; causes are doubted."""
 
 from types import SimpleNamespace
 

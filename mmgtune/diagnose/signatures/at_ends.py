@@ -54,7 +54,7 @@ class AtEnds:
         if len(self.formulas) >= MOST * len(self.alone):
             return (
                 f"{told}, two standard deviations of ships about the formulas they are from: this ship may be unlike "
-                "those, which no single cause stands for. Coefficients of her own tests, or a sister ship's, come first."
+                "those, which no single cause stands for. Coefficients of her own tests, or a sister's, come first."
             )
         return f"{told}: the ship may be unlike her profile in many ways, which no single cause stands for."
 
