@@ -10,6 +10,7 @@ from ..fitting.setting import in_pieces
 from ..options import DiagnoseOptions
 from ..run_files import DIAGNOSIS, DRAWN_UP, MOTIONS, PROFILE
 from ..trial import VoyageSet
+from .bench.beliefs import FURTHEST
 from .bench.hypotheses import known_causes
 from .bench.workbench import make_workbench
 from .voyages.windows import looked_at, with_hull_held
@@ -37,7 +38,7 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven | VoyageSet, options:
         *whole(ship, pieces, search, own),
         f"effects   {', '.join(tags)}",
         f"compares  {bench.problem.n_residuals} differences of {', '.join(bench.channels)}; back end {options.backend}",
-        f"targets   within {width_words(options.a_r)} of their values: {', '.join(bench.targets)}",
+        f"targets   within {width_words(options.a_r, scatters=FURTHEST)} of their values: {', '.join(bench.targets)}",
         *(
             (f"leeway    {100.0 * options.leeway:.3g} % of their values: {', '.join(bench.believed.leeway)}",)
             if bench.believed.leeway

@@ -68,7 +68,8 @@ class Diagnosis(Answer):
         ]
         effects = [cause.effect for cause in self.causes if cause.effect is not None]
         held = 0.0 if self.choice is not None else self.options.leeway
-        return [*of_profile, *beliefs.in_words(held, effects), *winds.in_words(effects), *wave_groups.in_words(effects)]
+        believed = beliefs.in_words(held, effects, self.ends.formulas if self.ends else 0)
+        return [*of_profile, *believed, *winds.in_words(effects), *wave_groups.in_words(effects)]
 
     def _voyages(self) -> dict[str, Any] | None:
         """What was looked at of voyages, and what differs from one to the next."""

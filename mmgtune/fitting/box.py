@@ -28,10 +28,10 @@ SCATTERS = 2.0
 """Half width of the box of a coefficient from a formula that says its scatter: nineteen ships of twenty lie within."""
 
 
-def width_words(a_r: float | None, sign: str = "+-") -> str:
+def width_words(a_r: float | None, sign: str = "+-", scatters: float = SCATTERS) -> str:
     """How wide a box is, in words; None where scatters of formulas make it."""
     if a_r is None:
-        return f"{SCATTERS:g} scatters of the formulas, else {sign}{A_R:g}"
+        return f"{scatters:g} scatters of the formulas, else {sign}{A_R:g}"
     return f"{sign}{a_r:g}"
 
 
@@ -163,10 +163,10 @@ class Box(Brief):
         return values
 
 
-def make_box(model: Model, targets: Sequence[str], a_r: float | None) -> Box:
+def make_box(model: Model, targets: Sequence[str], a_r: float | None, scatters: float = SCATTERS) -> Box:
     """The box pre +- a_r |pre| (Suyama et al. 2023, eq. 38), or a coefficient's own bounds where its profile has some.
 
-    Without a_r it is pre +- two scatters for a coefficient whose formula says its scatter, pre +- 0.5 |pre| for others.
+    Without a_r it is pre +- ``scatters`` for a coefficient whose formula says its scatter, pre +- 0.5 |pre| for others.
     Limits of what is possible (a wake fraction below 1, say) cut the box where it would go beyond them.  Raises
     OptionError for a_r <= 0, no targets, and targets that are 0 and have no bounds of their own.
     """
@@ -212,7 +212,7 @@ def make_box(model: Model, targets: Sequence[str], a_r: float | None) -> Box:
             bounds.append(coefficient.bounds)
             continue
         if a_r is None and coefficient.scatter is not None:
-            bounds.append((value - SCATTERS * coefficient.scatter, value + SCATTERS * coefficient.scatter))
+            bounds.append((value - scatters * coefficient.scatter, value + scatters * coefficient.scatter))
             continue
         if value == 0.0:
             problems.append(

@@ -18,6 +18,11 @@ from ...components import split_name
 from ...effects import Effect
 from ...fitting.box import Box, base_of, choose_targets
 from ...model import Model
+from ...profile import ShipProfile
+
+FURTHEST = 5.0
+"""Standard deviations of ships about its formula within which a target is looked for: what trials say and what is
+believed of it hold it, not the end of its box."""
 
 PATTERNS = ("hull.*", "wake.C_*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
 """What has leeway: forces of the hull, how its wake changes, mass and inertia with what moves along of the water."""
@@ -27,25 +32,36 @@ PATTERNS = ("hull.*", "wake.C_*", "particulars.m_x_", "particulars.m_y_", "parti
 class Beliefs:
     """Standard deviations in the unit cube, about the profile's values.
 
-    leeway  coefficients beside the targets that may move a little
-    forms   parameters of the forms of effects, which move wherever their effect does
+    leeway    coefficients beside the targets that may move a little
+    forms     parameters of the forms of effects, which move wherever their effect does
+    formulas  targets from formulas that say how far ships scatter about them
     """
 
     leeway: Mapping[str, float] = field(default_factory=dict)
     forms: Mapping[str, float] = field(default_factory=dict)
+    formulas: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, box: Box, loose: Sequence[str], share: float, shapes: Mapping[str, float]) -> Beliefs:
-        """Beliefs about coefficients known to a share of their values, and about forms with deviations in units of the
-        profile."""
-        leeway = share * np.abs(box.part(loose).pre) / box.part(loose).width
-        forms = {name: deviation / float(box.part([name]).width[0]) for name, deviation in shapes.items()}
-        return cls(dict(zip(loose, leeway.tolist(), strict=True)), forms)
+    def of(
+        cls, box: Box, loose: Sequence[str], share: float, shapes: Mapping[str, float], scatter: Mapping[str, float]
+    ) -> Beliefs:
+        """Beliefs about coefficients known to a share of their values, or as well as ships scatter about a formula, and
+        about forms; ``shapes`` and ``scatter`` in units of the profile."""
+        own = box.part(loose)
+        leeway = {
+            name: max(share * abs(pre), scatter.get(name, 0.0)) / width
+            for name, pre, width in zip(loose, own.pre.tolist(), own.width.tolist(), strict=True)
+        }
+        forms, formulas = (
+            {name: deviation / float(box.part([name]).width[0]) for name, deviation in known.items()}
+            for known in (shapes, {name: one for name, one in scatter.items() if name not in leeway})
+        )
+        return cls(leeway, forms, formulas)
 
     @property
     def deviations(self) -> Mapping[str, float]:
-        """Leeway and form deviations together."""
-        return {**self.leeway, **self.forms}
+        """All together."""
+        return {**self.leeway, **self.forms, **self.formulas}
 
     def form_of(self, effect: Effect) -> tuple[str, ...]:
         """Parameters of the form of an effect, which are free wherever the effect is."""
@@ -73,6 +89,12 @@ def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[
     return tuple(name for name in free if name not in targets and model.profile.value(name) != 0.0)
 
 
+def scatters(profile: ShipProfile, names: Sequence[str]) -> dict[str, float]:
+    """Standard deviations of ships about the formulas that coefficients are from, of those that say it."""
+    known = {name: profile.coefficient(name).scatter for name in names}
+    return {name: scatter for name, scatter in known.items() if scatter is not None}
+
+
 def forms(model: Model, names: Sequence[str]) -> dict[str, float]:
     """Parameters of the forms of all effects that any of the names is of, with their standard deviations."""
     asked = {split_name(base_of(name))[0] for name in names}
@@ -84,11 +106,17 @@ def forms(model: Model, names: Sequence[str]) -> dict[str, float]:
     }
 
 
-def in_words(share: float, effects: Sequence[Effect]) -> list[dict[str, str]]:
-    """Rows on the leeway and on the forms of effects that were found, for the table of assumptions: name, value and
-    note."""
+def in_words(share: float, effects: Sequence[Effect], formulas: int) -> list[dict[str, str]]:
+    """Rows on targets from formulas, on the leeway and on the forms of effects that were found, for the table of
+    assumptions: name, value and note."""
+    tuned = {
+        "name": f"{formulas} targets from formulas",
+        "value": "the profile's, with the standard deviation of ships about the formula",
+        "note": "what the formula expects, beside what the trials say",
+    }
+    beside = [tuned] if formulas else []
     if share <= 0.0:
-        return []
+        return beside
     hull = {
         "name": ", ".join(PATTERNS),
         "value": f"the profile's, beside the targets, with a standard deviation of {100.0 * share:.3g} %",
@@ -103,4 +131,4 @@ def in_words(share: float, effects: Sequence[Effect]) -> list[dict[str, str]]:
         for effect in effects
         for name, deviation in effect.form.items()
     ]
-    return [hull, *off]
+    return [*beside, hull, *off]

@@ -23,6 +23,9 @@ MOSTLY = 0.95
 """Share of the error above noise on the trials it was found on that a cause must remove to be named alone, where
 something of a shape is left besides."""
 
+OF_ALL = 0.995
+"""Share of that from which a single cause that leaves nothing but noise is not refuted by runs left out in turn."""
+
 ALL, ALL_HELD_OUT = 0.998, 0.98
 """Share of the error above noise from which it counts as all of it, and that share on held-out trials."""
 
@@ -123,9 +126,8 @@ class Belief:
             return "it leaves far more than noise, and more than gusts of such a wind, or groups of such waves, would"
         if why := self._bent:
             return why
-        if self.ends and self.ends.unlike and brought:
-            told = f"{len(self.ends.beside)} of {self.ends.targets} coefficients that are re-tuned"
-            return f"beside {'it' if len(brought) == 1 else 'them'} {told} end at the end of their range"
+        if self.ends and self.ends.unlike and not all(one.of_logs for one in self.causes):
+            return f"beside {'it' if len(brought) == 1 else 'them'} {self.ends.words}"
         surely = {tag for tag, one in self.contributions if one.seen > TOLD and len(brought) > 1}
         doubtful = [one for one in self.causes if not one.sized and one.tag not in surely]
         unsized = list(dict.fromkeys(one.tag for one in doubtful))
@@ -257,7 +259,7 @@ class Belief:
         if self.gain.held_out != "each" or self.gain.share_removed < AT_ALL:
             return False
         alone = len(self.contributions) == 1 and not self.leaves_open
-        if alone and self.explained_share >= ALL and self.rest < NOTICED:
+        if alone and self.explained_share >= OF_ALL and self.rest < NOTICED:
             return False
         return self.gain.left**2 > BEYOND_OPEN * (1.0 + self.leftover.left_open)
 
