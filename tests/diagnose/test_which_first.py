@@ -158,17 +158,22 @@ def test_one_rate_of_the_rudder_stands_for_two_that_are_alike(monkeypatch, chi2,
     )
 
 
-@pytest.mark.parametrize(("gain", "rivals"), [(5_645.0, ["rpm-scale"]), (4_000.0, [])])
-def test_what_was_near_to_another_form_of_a_cause_is_its_rival(monkeypatch, gain, rivals):
-    """A displacement that did as well as a factor on the revolutions was exchanged for a draught, and told alone."""
+@pytest.mark.parametrize("lost", [False, True], ids=["sailed without it", "a run is lost without it"])
+@pytest.mark.parametrize(("gain", "rivals"), [(5_645.0, ["rpm-scale"]), (4_000.0, []), (-math.inf, [])])
+def test_what_was_near_to_another_form_of_a_cause_is_its_rival(monkeypatch, gain, rivals, lost):
+    """A displacement that did as well as a factor on the revolutions was exchanged for a draught, and told alone.
+
+    What loses a run was a rival, for not a number is not beaten, and ended the diagnosis with a failed decomposition.
+    """
     draught, other = Hypothesis(find_effect("loading"), ("draught",)), fitted("rpm-scale", 5_640.0, 1.0, 0.0)
     first = [fitted("loading", 5_648.0, 1.0, 0.0), other]
     second = [replace(fitted("loading", 24.0, 1.0, 0.0), hypothesis=draught)]
     base = SimpleNamespace(chi2=20_000.0, names=())
     steps = [Step(base, None, [], refits, [], True, "") for refits in (first, second)]
     final = SimpleNamespace(chi2=base.chi2 - 5_650.0)
-    found = SimpleNamespace(causes=[draught], final=final, steps=steps, left_out=[])
-    monkeypatch.setattr(search, "without", lambda *_: base)
+    found = SimpleNamespace(causes=[draught], final=final, base=base, steps=steps, left_out=[])
+    fewer = SimpleNamespace(chi2=math.inf if lost else base.chi2, names=())
+    monkeypatch.setattr(search, "without", lambda *_: fewer)
     monkeypatch.setattr(search, "hopeless_beside", lambda *_: math.inf)
     monkeypatch.setattr(search, "_where", lambda point, _: point)
     monkeypatch.setattr(search, "fitted_beside", lambda *_: SimpleNamespace(chi2=base.chi2 - gain))

@@ -318,15 +318,16 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
         return rivals_among(step.refits)
     near = [*(rival for one in (step, *others) for rival in _near(one, cause)), *found.left_out]
     fewer = without(bench, found.final, cause)
-    best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
+    before = fewer.chi2 if np.isfinite(fewer.chi2) else found.base.chi2  # without it a run may be lost
+    best = replace(step.refits[0], point=found.final, gain=before - found.final.chi2)
     rivals: dict[str, Refit] = {}
     for rival in near:
         if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
             continue
         for start in (found.final, fewer):  # a ship tuned to nothing in its place may be far off
             other = fitted_beside(bench, _where(fewer, start), rival, hopeless_beside(bench, found.final.chi2))
-            one = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
-            if not best.beats(one):
+            one = replace(rival, point=other, gain=before - other.chi2)
+            if np.isfinite(other.chi2) and not best.beats(one):
                 rivals.setdefault(one.hypothesis.tag, one)
                 break
     return list(rivals.values())
