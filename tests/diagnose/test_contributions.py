@@ -36,6 +36,7 @@ from mmgtune.diagnose.held_out.unseen import Unseen
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.searching.search import Found
+from mmgtune.diagnose.signatures.at_ends import AtEnds
 from mmgtune.diagnose.signatures.intervals import Estimate, _in_units
 from mmgtune.effects import Visited, effects, find_effect
 from mmgtune.fitting.box import Box
@@ -756,14 +757,22 @@ def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_
     """An antenna 110 m aft, beside a form of the hull that nobody knows, was named without its size."""
     runs = None if doubt is None else SimpleNamespace(doubt=doubt, points_everywhere=everywhere)
     sentence = "The antenna stood 110 m aft"
-    cause = SimpleNamespace(sized=sized, at_ends=False, tag="antenna", sentence=sentence, runs=runs)
+    cause = SimpleNamespace(
+        sized=sized, at_ends=False, tag="antenna", sentence=sentence, runs=runs, estimates={"ahead": None}
+    )
     gain = SimpleNamespace(share_removed=held_out, surely_removed=0.0)
     another = SimpleNamespace(sized=True, at_ends=False, tag="hull-term")
-    first = SimpleNamespace(causes=(SimpleNamespace(tag="antenna"),), explained_share=explained, gain=gain)
+    first = SimpleNamespace(causes=(cause,), explained_share=explained, gain=gain)
     leading = Leading.of(SimpleNamespace(causes=(another, cause)), first)
     assert (leading is not None) == leads
     if leading is not None:
         assert leading.sentence == f"Most of it, {100 * held_out:.0f} %, would be antenna: the antenna stood 110 m aft."
+        plain = SimpleNamespace(**vars(cause) | {"runs": None, "estimates": {"ahead": None, "up": None}})
+        told = Leading.of(
+            SimpleNamespace(causes=(another, cause)), SimpleNamespace(**vars(first) | {"causes": (plain,)})
+        )
+        assert told is not None
+        assert told.cause is plain  # in a plainer form its size is that of this form
 
 
 @pytest.mark.parametrize(
@@ -1095,6 +1104,8 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
         unclear="one of them is a trace",
         tells_a_part=True,
         leading=most,
+        ends=None,
+        of_a_sensor=False,
     )
     said = saying.said(seen)
     assert said.headline == f"{said.first} {most.sentence}"
@@ -1109,6 +1120,11 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     seen.contributions = seen.contributions[:1]
     assert ", antenna, removes" in saying.said(seen).why
     assert ": this stands for" in saying.said(seen).why
+    seen.ends, unlike = AtEnds(("hull.Y_v",) * 5, (), 10), "5 of 10 coefficients end at the end of their range"
+    assert unlike not in saying.said(seen).why  # logs first
+    first, seen.contradicted = seen.contradicted, ""
+    assert unlike in saying.said(seen).why
+    seen.contradicted = first
     said = saying.said(seen)
     assert said.headline == seen.contradicted
     assert said.explained.startswith("Something is wrong that this program cannot name. The best")

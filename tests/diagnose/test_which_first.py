@@ -8,12 +8,14 @@ from types import SimpleNamespace
 
 import pytest
 
+from mmgtune.diagnose.answering import judging
 from mmgtune.diagnose.answering.judging import _of_kin
 from mmgtune.diagnose.bench.hypotheses import Hypothesis
 from mmgtune.diagnose.searching import look, search
 from mmgtune.diagnose.searching.look import Step
 from mmgtune.diagnose.searching.refit import Refit, believable_first, decide, kin_among, rivals_among
 from mmgtune.diagnose.searching.refitting import Refitting
+from mmgtune.diagnose.searching.search import Found
 from mmgtune.effects import find_effect
 
 N_RESIDUALS, BEFORE = 10_000, 15_000.0
@@ -206,3 +208,21 @@ def test_what_chance_may_bring_is_no_doubt_where_a_plainer_form_of_it_is_told(fo
     best, *others = [of(*form) for form in forms]
     two_rates = of("steering-lag", 3300.0, 290.0, 0.1)
     assert look._in_a_form_told([best, two_rates, *others], two_rates, 0.01) == told
+
+
+@pytest.mark.parametrize(("plain", "told"), [(9_300.0, 2), (8_000.0, 4)], ids=["steady does as well", "it changed"])
+def test_the_first_of_a_sum_is_told_in_its_plainest_form(monkeypatch, plain, told):
+    """Of a hull of another form "the current changed within a run by up to 0.7 m/s in ten minutes": it was steady."""
+    steady, changing = (
+        Hypothesis(find_effect("current"), names) for names in find_effect("current").variants if len(names) in (2, 4)
+    )
+    of_each = replace(changing, by="trial", groups=("trial:a", "trial:b", "trial:c"))
+    falls = {steady.names: plain, changing.names: 9_500.0 if told == 4 else plain}
+    base = SimpleNamespace(chi2=20_000.0)
+    monkeypatch.setattr(judging, "as_special", lambda *asked: SimpleNamespace(chi2=20_000.0 - falls[asked[-1].names]))
+    found = Found(base, SimpleNamespace(chi2=10_000.0), [of_each])
+    asker = SimpleNamespace(bench=None, asked=[changing, steady, Hypothesis(find_effect("flap"), ("factor",))])
+    (cause,) = judging.Judge._plainest(asker, found).causes
+    assert (cause.by, len(cause.names)) == ("", told)
+    falls |= dict.fromkeys(falls, 100.0)
+    assert judging.Judge._plainest(asker, found) is found

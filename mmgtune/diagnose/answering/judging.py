@@ -34,7 +34,7 @@ from ..held_out.unseen import Unseen
 from ..result import Diagnosis
 from ..searching.instead import instead_of_tuning
 from ..searching.refit import WORTH, Refit, kin_among
-from ..searching.search import Found, rivals_of, step_of
+from ..searching.search import Found, as_special, rivals_of, step_of
 from ..signatures.at_ends import AtEnds
 from ..signatures.intervals import Estimate, estimates
 from ..signatures.retuned import retuned, unlike_any
@@ -56,6 +56,9 @@ OF_RUNS_OFF = 0.03
 
 PROMISING = 0.05
 """Share of the best gain from which a hypothesis is held against the test trials."""
+
+PLAIN = 0.9
+"""Share of the fall of chi-squared by the first cause of a sum from which a plainer form of it is told."""
 
 MUCH_OPEN = 2.0
 """Variance that inputs leave open, over that of the noise, from which windows are advised where runs are long."""
@@ -96,6 +99,8 @@ class Judge:
         result, found = self._without_doubtful(result, found, brought)
         for causes, doubted in _fewer(result, found) if result.unclear and not self.hooks.stop() else []:
             fewer = with_only(self.bench, found, causes)
+            if doubted is not None:
+                fewer = self._plainest(fewer)
             brought = contributions(self.bench, fewer, self.unseen)
             other = self._compared(self._judged(fewer, brought, doubted), fewer)
             enough = other.explains_all if other.differs_by_run else other.explains_nearly_all
@@ -120,6 +125,17 @@ class Judge:
             self.hooks.on_phase("asking what re-tuning may stand for")
             result = replace(result, instead=instead_of_tuning(self.bench, found.base, self.asked))
         return result, found
+
+    def _plainest(self, found: Found) -> Found:
+        """What was found with the first of its causes alone, of the form with fewest values that does nearly as much:
+        values of each run, and what changes within runs, bend to the rest of what is wrong."""
+        (cause,) = found.causes
+        fall = found.base.chi2 - found.final.chi2
+        for one in sorted((one for one in self.asked if cause.holds(one)), key=lambda one: len(one.names)):
+            point = as_special(self.bench, found.final, cause, one)
+            if found.base.chi2 - point.chi2 > PLAIN * fall:
+                return replace(found, final=point, causes=[one])
+        return found
 
     def _may_be_noise(self, result: Diagnosis) -> bool:
         """Whether what the re-tuned model leaves is next to nothing, or has no shape and is next to nothing beside

@@ -144,7 +144,7 @@ def _of_none(answer: Answer) -> Said:
         return Said(answer.swell)
     if answer.leaves_open:
         left_open = (
-            f"The re-tuned model leaves {_of_noise(answer.leftover.left_open)} of the sensors, "
+            f"The re-tuned model leaves {_of_noise(answer.leftover.left_open)}, "
             "no more than what revolutions and rudder angle did between two samples of their log leaves "
             "open: inputs logged more often would tell more."
         )
@@ -251,11 +251,7 @@ def _of_the_unknown(answer: Answer) -> Said:
         fits = answer.misread and not (answer.causes or answer.leftover.noticed)
         return Said(f"Something is wrong with a sensor, and no known cause shows: {told}.", without if fits else "")
     excess = answer.leftover.unknown
-    left = (
-        f"{_of_noise(excess)} of the measurements"
-        if excess < LARGE
-        else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
-    )
+    left = _of_noise(excess, "measurements")
     offsets = [f"{in_words(*one)}." for one in answer.leftover.offsets.items()]
     unknown = "Something is wrong that this program does not know"
     if answer.tells_a_part:
@@ -316,6 +312,8 @@ def _gained(answer: Answer, them: str, where: str) -> str:
     return f"Adding {them} removes {in_percent(share)} of the error {where}{hull}{few}."
 
 
-def _of_noise(variance: float) -> str:
-    """A variance compared with that of the noise, in words."""
-    return f"an error with {100.0 * variance:.0f} % of the variance of the noise"
+def _of_noise(variance: float, of: str = "sensors") -> str:
+    """An error whose variance beyond noise is given as a share of that of the noise, in words."""
+    if variance < LARGE:
+        return f"an error with {100.0 * variance:.0f} % of the variance of the noise of the {of}"
+    return f"an error {math.sqrt(1.0 + variance):,.0f} times the noise of the sensors"

@@ -54,12 +54,15 @@ class Leading:
     @classmethod
     def of(cls, whole: Belief, first: Belief) -> Leading | None:
         """From the answer with all causes, which has the size of the first, and the answer with the first alone, which
-        has its gain; None where the gain is small, or the size is not determined or none of the runs, or sizes of runs
-        point everywhere."""
+        has its gain, and its size where its form is plainer; None where the gain is small, or the size is not
+        determined or none of the runs, or sizes of runs point everywhere."""
         explained, held_out = first.explained_share, first.gain.share_removed
         if not first.causes or min(explained, held_out) < LEADS:
             return None
-        cause = next(one for one in whole.causes if one.tag == first.causes[0].tag)
+        alone = first.causes[0]
+        cause = next(one for one in whole.causes if one.tag == alone.tag)
+        if (cause.runs is None, cause.estimates.keys()) != (alone.runs is None, alone.estimates.keys()):
+            cause = alone
         doubtful = cause.runs is not None and (bool(cause.runs.doubt) or cause.runs.points_everywhere)
         return cls(cause, explained, held_out) if cause.sized and not (cause.at_ends or doubtful) else None
 

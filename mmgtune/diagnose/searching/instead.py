@@ -30,6 +30,9 @@ NEARLY = 0.85
 OF_OTHERS = 1.0 / 3.0
 """Largest ratio of the error it leaves to the error that the next best other effect leaves."""
 
+LEAST = 1.0
+"""Typical sizes of a cause from which it is told: a hull a few per cent off looks like a draught two per cent off."""
+
 MATTERS = 1.0 - (1.0 - NEARLY) / OF_OTHERS
 """Share of what re-tuning removes that a cause must promise to be followed to its end: less changes no answer."""
 
@@ -119,6 +122,8 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     except Stopped:
         return None
     best = fits[0]
+    if best.size < LEAST:
+        return None
     other = next((fit for fit in fits if fit.hypothesis.tag != best.hypothesis.tag), None)
     if other and other.gain < MATTERS * fall:  # it may not have been followed to its end
         other = None

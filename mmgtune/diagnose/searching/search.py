@@ -224,13 +224,13 @@ def _make_alike(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> 
     """
     for cause in asked:
         one = replace(cause, by="", groups=())
-        alike = _as_special(bench, found.final, cause, one)
+        alike = as_special(bench, found.final, cause, one)
         if alike.chi2 < STRONG * bench.problem.n_residuals:
             found.causes[found.causes.index(cause)] = one
             found.final = alike
 
 
-def _as_special(bench: Workbench, point: Point, cause: Hypothesis, special: Hypothesis) -> Point:
+def as_special(bench: Workbench, point: Point, cause: Hypothesis, special: Hypothesis) -> Point:
     """The point refitted with a special case in the place of a cause; one value for all, or for a group of runs, begins
     at the mean of those of each run."""
     gone = [name for name in cause.names if name not in special.names]
@@ -257,7 +257,7 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
             continue
         special = [one for one in hypotheses if cause.holds(one)]
         for one in sorted(special, key=lambda one: len(one.names)):
-            fewer = _as_special(bench, found.final, cause, one)
+            fewer = as_special(bench, found.final, cause, one)
             saved = (len(cause.names) - len(one.names)) * bench.price
             if one.by != cause.by:
                 saved = price_of(bench, found, cause) - len(one.names) * bench.price
