@@ -76,6 +76,7 @@ def test_it_is_said_before_what_cannot_be_named(monkeypatch):
         ended={"u": 2.6},
         causes=(),
         wrong_logs={},
+        ends=None,
     )
     first, why, *_ = saying.said(answer)
     assert first == (

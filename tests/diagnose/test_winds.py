@@ -191,7 +191,7 @@ def test_a_cause_beside_a_wind_is_told(gusts, time_constant):
 
 def test_what_is_believed_beforehand_is_told():
     wind, lag = find_effect("wind"), find_effect("steering-lag")
-    told = {one["name"]: one["value"] for one in (*beliefs.in_words(0.05, [wind, lag]), *winds.in_words([wind, lag]))}
+    told = {one["name"]: one["value"] for one in (*beliefs.in_words(0.05, [wind, lag], 0), *winds.in_words([wind, lag]))}
     assert told["hull.*, wake.C_*, particulars.m_x_, particulars.m_y_, particulars.k_zz_"].endswith("5 %")
     assert told["effects.wind.turning"] == "1 with a standard deviation of 0.5"
     assert told["effects.wind.arm"] == "0 with a standard deviation of 0.05"
