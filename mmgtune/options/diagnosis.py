@@ -15,7 +15,7 @@ from .tuning import CHANNELS, FitOptions
 class DiagnoseOptions(SimulationOptions):
     """All choices of a diagnosis with working defaults.  A wrong integrator is itself a candidate cause."""
 
-    a_r: float | None = again(FitOptions, "a_r")
+    a_r: float | None = again(FitOptions, "a_r", but="A diagnosis looks within five, weighed by what one expects.")
     targets: tuple[str, ...] = again(FitOptions, "targets")
     fixed: tuple[str, ...] = again(FitOptions, "fixed")
     effects: tuple[str, ...] = choice(

@@ -10,6 +10,7 @@ from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.bench.beliefs import FURTHEST
 from mmgtune.diagnose.bench.workbench import Point, make_workbench
 from mmgtune.diagnose.signatures.at_ends import BEYOND, AtEnds
+from mmgtune.effects import find_effect
 from mmgtune.trial import load_trials
 from tests.diagnose.beliefs import belief_with
 
@@ -52,13 +53,25 @@ def test_of_targets_from_formulas_a_few_are_enough(many):
     ids=["one", "several", "an error of a log, which is told by the log itself"],
 )
 def test_causes_beside_which_many_are_at_an_end_are_doubted(of_logs, brought, why):
-    causes = tuple(SimpleNamespace(of_logs=one, sized=True, at_ends=False, runs=None) for one in of_logs)
+    causes = tuple(SimpleNamespace(of_logs=one, sized=True, at_ends=False, runs=None, effect=None) for one in of_logs)
     contributions = (("rudder-gain", SimpleNamespace(seen=1.0)),) * brought
     gain = SimpleNamespace(share_removed=0.9)
     left = SimpleNamespace(unknown=0.0, structured=False)
     known = {"_told_by_none": False, "_excused_by_gusts": False, "_bent": "", "contributions": contributions}
     known |= {"causes": causes, "gain": gain, "leftover": left, "_n_terms": 1, "_faint": False}
     assert belief_with(**known, ends=AtEnds((), NAMES[:4], len(NAMES))).unclear == why
+
+
+@pytest.mark.parametrize(("formulas", "brought"), [(8, 2), (8, 1), (0, 2)])
+def test_a_term_that_a_hull_from_formulas_lacks_is_believed_alone(formulas, brought):
+    """Of a hull of another form "the rudder stood 0.9 deg to starboard (true: 1.5), and moved by 0.64 times"."""
+    effects = (find_effect("hull-term"), find_effect("rudder-offset"))[:brought]
+    causes = tuple(SimpleNamespace(of_logs=False, sized=True, at_ends=False, runs=None, effect=one) for one in effects)
+    known = {"_told_by_none": False, "_excused_by_gusts": False, "_bent": "", "_n_terms": 1, "_faint": False}
+    known |= {"causes": causes, "contributions": tuple((one.tag, SimpleNamespace(seen=1.0)) for one in effects)}
+    known |= {"gain": SimpleNamespace(share_removed=0.9), "leftover": SimpleNamespace(unknown=0.0, structured=False)}
+    unclear = belief_with(**known, ends=AtEnds((), (), 10, formulas)).unclear
+    assert ("hull that is from formulas" in unclear) == (formulas > 0 and brought > 1)
 
 
 def test_targets_from_formulas_are_held_by_what_these_expect():
