@@ -45,7 +45,7 @@ class Diagnosis(Answer):
     together  what was found without the trials kept for testing, where these had to be looked at too; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     of_traces variance beyond noise that traces account for, as a share of it
-    ends      targets at the end of their range, re-tuned without causes and with them
+    ends      targets far off what was believed of them, re-tuned without causes and with them
     more      whether much is left beside as many causes as are believed together
     """
 

@@ -49,8 +49,9 @@ def test_of_targets_from_formulas_a_few_are_enough(many):
         ((False,), 1, "beside it 4 of 10 coefficients that are re-tuned end at the end of their range"),
         ((False, True), 3, "beside them 4 of 10 coefficients that are re-tuned end at the end of their range"),
         ((True,), 1, ""),
+        ((False,), 0, ""),
     ],
-    ids=["one", "several", "an error of a log, which is told by the log itself"],
+    ids=["one", "several", "an error of a log, which is told by the log itself", "how a log is read"],
 )
 def test_causes_beside_which_many_are_at_an_end_are_doubted(of_logs, brought, why):
     causes = tuple(SimpleNamespace(of_logs=one, sized=True, at_ends=False, runs=None, effect=None) for one in of_logs)

@@ -126,7 +126,7 @@ class Belief:
             return "it leaves far more than noise, and more than gusts of such a wind, or groups of such waves, would"
         if why := self._bent:
             return why
-        if self.ends and self.ends.unlike and not all(one.of_logs for one in self.causes):
+        if self.ends and self.ends.unlike and brought and not all(one.of_logs for one in self.causes):
             return f"beside {'it' if len(brought) == 1 else 'them'} {self.ends.words}"
         of_form = any(one.effect and one.effect.one_of_many for one in self.causes)
         if self.ends and self.ends.from_formulas and of_form and len(brought) > 1:
