@@ -99,7 +99,7 @@ class Judge:
         result, found = self._without_doubtful(result, found, brought)
         for causes, doubted in _fewer(result, found) if result.unclear and not self.hooks.stop() else []:
             fewer = with_only(self.bench, found, causes)
-            if doubted is not None:
+            if doubted is not None and causes:
                 fewer = self._plainest(fewer)
             brought = contributions(self.bench, fewer, self.unseen)
             other = self._compared(self._judged(fewer, brought, doubted), fewer)

@@ -128,8 +128,8 @@ class Belief:
             return why
         if self.ends and self.ends.unlike and brought and not all(one.of_logs for one in self.causes):
             return f"beside {'it' if len(brought) == 1 else 'them'} {self.ends.words}"
-        of_form = any(one.effect and one.effect.one_of_many for one in self.causes)
-        if self.ends and self.ends.from_formulas and of_form and len(brought) > 1:
+        of_formulas = self.ends is not None and self.ends.from_formulas and len(brought) > 1
+        if of_formulas and any(one.effect and one.effect.one_of_many for one in self.causes):
             return "a term that the hull lacks is as likely part of another form of a hull that is from formulas"
         surely = {tag for tag, one in self.contributions if one.seen > TOLD and len(brought) > 1}
         doubtful = [one for one in self.causes if not one.sized and one.tag not in surely]
