@@ -63,9 +63,7 @@ def test_what_all_trials_were_looked_at_for_must_be_told_by_the_others(share, mo
     found = {"causes": causes, "contributions": (("current", None),), "together": SimpleNamespace(settled=True)}
     assert belief_with(gain=gain, **found)._told_by_none is untold
     read = belief_with(gain=gain, **found | {"contributions": ()})
-    assert (
-        not read._told_by_none
-    )  # a log that holds its values: nothing was fitted, and the model without is read so too
+    assert not read._told_by_none  # a log that holds its values: nothing was fitted
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,6 @@ from ...components import split_name
 from ...effects import Effect
 from ...fitting.box import Box, base_of, choose_targets
 from ...model import Model
-from ...profile import ShipProfile
 
 FURTHEST = 5.0
 """Standard deviations of ships about its formula within which a target is looked for: what trials say and what is
@@ -43,20 +42,23 @@ class Beliefs:
 
     @classmethod
     def of(
-        cls, box: Box, loose: Sequence[str], share: float, shapes: Mapping[str, float], scatter: Mapping[str, float]
+        cls, box: Box, loose: Sequence[str], share: float, shapes: Mapping[str, float], *, formulas: bool
     ) -> Beliefs:
-        """Beliefs about coefficients known to a share of their values, or as well as ships scatter about a formula, and
-        about forms; ``shapes`` and ``scatter`` in units of the profile."""
+        """Beliefs about coefficients known to a share of their values, and about forms with deviations in units of the
+        profile; formulas: whether what is from one is known as well as ships scatter about it."""
+        scatter = {}
+        if formulas and box.scatter is not None:
+            scatter = {box.names[k]: float(box.scatter[k]) for k in box.from_formula}
         own = box.part(loose)
         leeway = {
             name: max(share * abs(pre), scatter.get(name, 0.0)) / width
             for name, pre, width in zip(loose, own.pre.tolist(), own.width.tolist(), strict=True)
         }
-        forms, formulas = (
+        forms, tuned = (
             {name: deviation / float(box.part([name]).width[0]) for name, deviation in known.items()}
             for known in (shapes, {name: one for name, one in scatter.items() if name not in leeway})
         )
-        return cls(leeway, forms, formulas)
+        return cls(leeway, forms, tuned)
 
     @property
     def deviations(self) -> Mapping[str, float]:
@@ -87,12 +89,6 @@ def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[
     there = [pattern for pattern in PATTERNS if any(fnmatchcase(name, pattern) for name in model.profile.names())]
     free = choose_targets(model, there, fixed)
     return tuple(name for name in free if name not in targets and model.profile.value(name) != 0.0)
-
-
-def scatters(profile: ShipProfile, names: Sequence[str]) -> dict[str, float]:
-    """Standard deviations of ships about the formulas that coefficients are from, of those that say it."""
-    known = {name: profile.coefficient(name).scatter for name in names}
-    return {name: scatter for name, scatter in known.items() if scatter is not None}
 
 
 def forms(model: Model, names: Sequence[str]) -> dict[str, float]:

@@ -24,7 +24,7 @@ from ...options import DiagnoseOptions
 from ...profile import ShipProfile, read_off, with_all_effects
 from ...trial import Coverage, Held, Trial, visited_by
 from ...trial.kinematics import motion_noise
-from .beliefs import FURTHEST, Beliefs, forms, let_go, scatters
+from .beliefs import FURTHEST, Beliefs, forms, let_go
 from .noise import NoiseModel, by_channel, white
 from .runs import between, labels_of
 from .slopes import quick_slopes
@@ -396,7 +396,6 @@ def make_workbench(
     loose = let_go(own, targets, options.fixed) if options.leeway else ()
     shapes = forms(model, names) if options.leeway else {}
     box = make_box(model, tuple(dict.fromkeys((*targets, *loose, *names, *shapes))), options.a_r, FURTHEST)
-    scatter = scatters(profile, [*targets, *loose]) if options.a_r is None else {}
     problem = FitProblem.of(
         model=model,
         cases=cases,
@@ -416,5 +415,5 @@ def make_workbench(
         problem,
         white(cases),
         held=held,
-        believed=Beliefs.of(box, loose, options.leeway, shapes, scatter),
+        believed=Beliefs.of(box, loose, options.leeway, shapes, formulas=options.a_r is None),
     )

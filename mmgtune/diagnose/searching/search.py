@@ -242,8 +242,8 @@ def as_special(bench: Workbench, point: Point, cause: Hypothesis, special: Hypot
         for one in special.names
     ]
     if special.by:
-        known = {base: point.spreads[f"{base}{AT}{cause.by}"] for base in special.bases}
-        point = replace(point, spreads={**point.spreads, **{f"{base}{AT}{special.by}": known[base] for base in known}})
+        own = {f"{base}{AT}{special.by}": point.spreads[f"{base}{AT}{cause.by}"] for base in special.bases}
+        point = replace(point, spreads={**point.spreads, **own})
     return _exchanged(bench, point, gone, special.names, mean)
 
 

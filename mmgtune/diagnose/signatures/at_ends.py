@@ -58,9 +58,9 @@ class AtEnds:
     @property
     def words(self) -> str:
         """How many are far off beside the causes."""
-        end = "beyond two standard deviations of ships about their formulas"
-        end = end if self.from_formulas else "at the end of their range"
-        return f"{len(self.beside)} of {self.targets} coefficients that are re-tuned end {end}"
+        beyond = "beyond two standard deviations of ships about their formulas"
+        where = beyond if self.from_formulas else "at the end of their range"
+        return f"{len(self.beside)} of {self.targets} coefficients that are re-tuned end {where}"
 
     def said(self, told: str) -> str:
         """What that says of a model that errs without a cause that can be named; "" where few are far off.
