@@ -1269,3 +1269,15 @@ def test_slow_errors_that_count_as_noise_are_told(fading, said):
     told = saying._fading(SimpleNamespace(noise=noise))
     assert said in told
     assert bool(told) == bool(said)
+
+
+@pytest.mark.parametrize(
+    ("before", "left", "share"),
+    [((0.0, 8.97), (0.0, 0.4), 0.96), ((8.97, 0.0), (0.36, 0.0), 0.96), ((0.0, 8.97), (0.0, 8.97), 0.0)],
+    ids=["a stall that inputs of 10 s excused", "one that they do not", "what inputs leave open and no cause removes"],
+)
+def test_what_inputs_may_have_left_open_is_explained_where_a_cause_removes_it(before, left, share):
+    """Each by what is in excess of the noise, and what inputs may have left open besides."""
+    known = [SimpleNamespace(excess=one, unknown=one, left_open=left_open) for one, left_open in (before, left)]
+    assert judging._explained(SimpleNamespace(causes=["stall"]), *known) == pytest.approx(share, abs=0.01)
+    assert judging._explained(SimpleNamespace(causes=[]), *known) == 0.0

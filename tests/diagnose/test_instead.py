@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose.bench.hypotheses import Hypothesis, hypotheses, of_runs
+from mmgtune.diagnose.bench.runs import within
 from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.searching import instead
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.searching.instead import Instead, instead_of_tuning
 from mmgtune.diagnose.searching.search import Found
@@ -18,6 +20,7 @@ from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from tests.hidden.cases import draw_ship
 from tests.hidden.plant import TUNING, WHITE, simulate, write
+from tests.trial.made import made
 
 search = importlib.import_module("mmgtune.diagnose.searching.search")  # the package has a function of that name
 
@@ -80,6 +83,29 @@ def test_a_current_keeps_its_rates_where_it_changes(tmp_path, rate, left):
     (cause,) = found.causes
     assert cause.variant == (left or richest.variant)
     assert set(found.final.names) == {*base.names, *cause.names}
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "of_it"),
+    [
+        ("effects.current.north@trial:a", "effects.current.north@group:monday", True),
+        ("effects.current.north@trial:b", "effects.current.north@group:monday", False),
+        ("effects.current.north@trial:b", "effects.current.north", True),
+        ("effects.current.east@trial:a", "effects.current.north@group:monday", False),
+    ],
+)
+def test_which_values_of_runs_a_value_of_a_day_takes_the_place_of(name, other, of_it):
+    runs = [made("a", group="monday"), made("b", group="tuesday")]
+    assert within(name, other, runs) == of_it
+
+
+@pytest.mark.long
+def test_less_than_its_typical_size_is_not_told(tmp_path, monkeypatch):
+    """Of a hull a few per cent off: "the ship was loaded otherwise: 1.02 times the draught"."""
+    bench, known = bench_of(tmp_path, {}, {"shallow-water": {"depth": 9.0}})
+    base = base_fit(bench)
+    monkeypatch.setattr(instead, "LEAST", 1e9)
+    assert instead_of_tuning(bench, base, known) is None
 
 
 def test_runs_of_two_days_whose_values_are_those_of_the_day(tmp_path):
