@@ -20,12 +20,11 @@ NAMES = tuple(f"hull.{name}" for name in ("Y_v", "Y_r", "N_v", "N_r", "Y_vvv", "
 @pytest.mark.parametrize("many", [3, 4])
 def test_four_tenths_at_the_end_of_their_range_are_said(many):
     ends = AtEnds(NAMES[:many], NAMES[:many], len(NAMES))
-    assert ends.unlike == bool(ends.said("")) == (many > 3)
+    assert ends.unlike == bool(ends.first) == bool(ends.why("")) == (many > 3)
     assert not AtEnds(NAMES[:2], NAMES[:2], 3).unlike  # few of few
     if many > 3:
-        assert ends.said("").startswith(
-            "Re-tuned without any cause, 4 of 10 coefficients end at the end of their range: "
-        )
+        assert ends.first.startswith("This ship may be unlike her profile in many ways, ")
+        assert ends.why("") == "Re-tuned without any cause, 4 of 10 coefficients end at the end of their range."
 
 
 @pytest.mark.parametrize("many", [4, 5])
@@ -34,12 +33,13 @@ def test_of_targets_from_formulas_a_few_are_enough(many):
     ends = AtEnds(NAMES, NAMES[:many], 30, 25)
     assert ends.unlike == (many > 4)
     if many > 4:
-        assert ends.said("").startswith(
-            "5 of 30 coefficients that are re-tuned end beyond two standard deviations of ships about their formulas: "
+        assert ends.first.startswith("This ship is unlike those that the formulas of her profile are from, ")
+        assert ends.why("").startswith(
+            "5 of 30 coefficients that are re-tuned end beyond two standard deviations of ships about their formulas. "
         )
-        assert ends.said(f"beside it {ends.words}").startswith("This ship is unlike those that the formulas are from")
+        assert ends.why(f"beside it {ends.words}").startswith("What her own tests, ")
     else:
-        assert ends.said("") == ""
+        assert ends.first == ends.why("") == ""
     assert BEYOND == 2.0  # as the sentence says
 
 
@@ -102,7 +102,8 @@ def test_a_ship_unlike_the_formulas_of_her_profile_gets_no_false_cause():
     ship, options = estimate(read_particulars("suzaku")), DiagnoseOptions(effects=["rudder-gain"])
     result = diagnose(ship, load_trials("suzaku"), options)
     assert result.verdict == "unexplained"
-    assert "of 31 coefficients that are re-tuned end beyond two standard deviations of ships" in result.sentence()
     document = result.to_dict()
+    assert document["headline"].startswith("This ship is unlike those that the formulas of her profile are from, ")
+    assert "of 31 coefficients that are re-tuned end beyond two standard deviations of ships" in result.sentence()
     assert document["unexplained"]["at_ends"]["targets"] == 31
     assert document["assumptions"][-2]["name"] == "31 targets from formulas"

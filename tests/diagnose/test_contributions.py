@@ -1124,6 +1124,7 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     assert unlike not in saying.said(seen).why  # logs first
     first, seen.contradicted = seen.contradicted, ""
     assert unlike in saying.said(seen).why
+    assert saying.said(seen).headline.startswith("This ship may be unlike her profile in many ways, which ")
     seen.contradicted = first
     said = saying.said(seen)
     assert said.headline == seen.contradicted

@@ -70,7 +70,9 @@ def said(answer: Answer) -> Said:
         pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
         first, *why = [*pieces, unknown.why]
         if answer.ends and not (answer.contradicted or answer.of_a_sensor):
-            why.append(answer.ends.said(answer.unclear))
+            unlike = answer.ends.first
+            first = unlike if unlike and first == _CANNOT_NAME else _joined(first, unlike)
+            why.append(answer.ends.why(answer.unclear))
         return Said(apart + first, _joined(*why), unknown.leading, " ".join(more))
     if answer.verdict == "none":
         one = _of_none(answer)

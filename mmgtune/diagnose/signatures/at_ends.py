@@ -62,24 +62,27 @@ class AtEnds:
         where = beyond if self.from_formulas else "at the end of their range"
         return f"{len(self.beside)} of {self.targets} coefficients that are re-tuned end {where}"
 
-    def said(self, told: str) -> str:
-        """What that says of a model that errs without a cause that can be named; "" where few are far off.
+    @property
+    def first(self) -> str:
+        """What that says first of a model that errs without a cause that can be named; "" where few are far off."""
+        no_cause = "which no single cause stands for"
+        if self.from_formulas:
+            unlike = "This ship is unlike those that the formulas of her profile are from"
+            return f"{unlike}, {no_cause}." if self.unlike else ""
+        return f"This ship may be unlike her profile in many ways, {no_cause}." if self._many(self.alone) else ""
+
+    def why(self, told: str) -> str:
+        """What it is told by, and what to do about it.
 
         told  what is said already
         """
-        if not self.from_formulas:
-            unlike = "the ship may be unlike her profile in many ways, which no single cause stands for"
-            far = f"{len(self.alone)} of {self.targets} coefficients"
-            return (
-                f"Re-tuned without any cause, {far} end at the end of their range: {unlike}."
-                if self._many(self.alone)
-                else ""
-            )
-        if not self.unlike:
+        if not self.first:
             return ""
-        unlike = "this ship is unlike those that the formulas are from, which no single cause stands for"
-        unlike = capital(unlike) if self.words in told else f"{capital(self.words)}: {unlike}"
-        return f"{unlike}. What her own tests, or those of a sister ship, say of them comes first."
+        if not self.from_formulas:
+            far = f"{len(self.alone)} of {self.targets} coefficients"
+            return f"Re-tuned without any cause, {far} end at the end of their range."
+        far = "" if self.words in told else f"{capital(self.words)}. "
+        return f"{far}What her own tests, or those of a sister ship, say of them comes first."
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
