@@ -3,10 +3,14 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+
+from ..phrases import capital
 from ..physics.elementary import where
 from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State, Surroundings
-from .effect import FlowEffect, Parameter, factor_on_measured, velocity_of_water
+from .effect import FlowEffect, Parameter, factor_on_flow_measured, turned_on_measured, velocity_of_water
+from .signs import as_logged
 
 
 class Current(NamedTuple):
@@ -17,26 +21,29 @@ class Current(NamedTuple):
     north_rate: Lanes
     east_rate: Lanes
     measured: Lanes
+    turned: Lanes
 
 
 def current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
     """Velocity of the water in the ship's axes: surge and sway [m/s].
 
-    Where the trial has measured current it counts, times ``measured``; else one that is linear in time.  With
-    velocities through water the equations of motion hold unchanged (Mathioudakis et al., eq. 9).
+    Where the trial has measured current it counts, times ``measured`` and turned back by ``turned``; else one that is
+    linear in time.  With velocities through water the equations of motion hold unchanged (Mathioudakis et al., eq. 9).
     """
-    by_log = around.current_known * e.measured > 0.0
-    north = where(by_log, around.current_north * e.measured, e.north + e.north_rate * around.elapsed)
-    east = where(by_log, around.current_east * e.measured, e.east + e.east_rate * around.elapsed)
+    by_log = around.current_known * np.abs(e.measured) > 0.0
+    shown_north, shown_east = to_ship(e.turned, around.current_north, around.current_east)
+    north = where(by_log, shown_north * e.measured, e.north + e.north_rate * around.elapsed)
+    east = where(by_log, shown_east * e.measured, e.east + e.east_rate * around.elapsed)
     ahead, starboard = to_ship(state.psi, north, east)
     return ahead, starboard
 
 
 def rate_of_current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
     """How fast the current changes over ground, in the ship's axes [m/s^2]: constant between two samples."""
-    by_log = around.current_known * e.measured > 0.0
-    north = where(by_log, around.current_north_rate * e.measured, e.north_rate)
-    east = where(by_log, around.current_east_rate * e.measured, e.east_rate)
+    by_log = around.current_known * np.abs(e.measured) > 0.0
+    shown_north, shown_east = to_ship(e.turned, around.current_north_rate, around.current_east_rate)
+    north = where(by_log, shown_north * e.measured, e.north_rate)
+    east = where(by_log, shown_east * e.measured, e.east_rate)
     ahead, starboard = to_ship(state.psi, north, east)
     return ahead, starboard
 
@@ -56,8 +63,8 @@ def _rate(direction: str) -> Parameter:
 
 
 def _sentence(v: Mapping[str, str]) -> str:
-    if "measured" in v:
-        return f"The current measured in the trials acts on the ship, with {v['measured']} times its measured speed"
+    if told := as_logged("current", "sets to", v):
+        return capital("; ".join(told))
     steady = f"The trials were run in a current of {v['speed']}"
     if "towards" in v:
         steady += f" setting towards {v['towards']}"
@@ -84,12 +91,19 @@ EFFECT = FlowEffect(
         "east": _component("east"),
         "north_rate": _rate("north"),
         "east_rate": _rate("east"),
-        "measured": factor_on_measured("the current", 2.0, 0.2, "from no current to twice the measured"),
+        "measured": factor_on_flow_measured("the current", 0.2),
+        "turned": turned_on_measured("the current", "sets to"),
     },
-    variants=(("north", "east"), ("north", "east", "north_rate", "east_rate"), ("measured",)),
+    variants=(
+        ("north", "east"),
+        ("north", "east", "north_rate", "east_rate"),
+        ("measured",),
+        ("turned",),
+        ("measured", "turned"),
+    ),
     told_as={("north", "east"): ("speed", "towards"), ("north_rate", "east_rate"): ("gain", "gaining")},
     sentence=_sentence,
-    of_measured={"measured": "current"},
+    of_measured={"measured": "current", "turned": "current"},
     besides=("north_rate", "east_rate"),
     rough_with=("north_rate", "east_rate"),
     stand_in=("north", "east", "north_rate", "east_rate"),

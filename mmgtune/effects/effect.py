@@ -120,6 +120,20 @@ def velocity_of_water(what: str) -> Parameter:
     )
 
 
+def factor_on_flow_measured(what: str, typical: float) -> Parameter:
+    """As ``factor_on_measured``, on a wind or a current; below 0 where its direction was logged the other way round."""
+    return Parameter(
+        f"factor on {what} measured in the trial, below 0 where it goes the other way",
+        default=1.0,
+        low=-5.0,
+        high=5.0,
+        null=0.0,
+        bounds=lambda _: (-2.5, 2.5),
+        typical=lambda _: typical,
+        bounds_source="more than m/s that were taken for knots, either way",
+    )
+
+
 def factor_on_measured(what: str, most: float, typical: float, source: str) -> Parameter:
     """The factor on something that was measured around the ship: as measured unless told otherwise, absent at 0.
 
@@ -134,6 +148,22 @@ def factor_on_measured(what: str, most: float, typical: float, source: str) -> P
         bounds=lambda _: (0.0, most),
         typical=lambda _: typical,
         bounds_source=source,
+    )
+
+
+def turned_on_measured(what: str, comes: str) -> Parameter:
+    """How far the direction of something that was measured around the ship is off [rad], absent at 0.
+
+    comes  where it is logged from, or to: "comes from"
+    """
+    return Parameter(
+        f"how far the logged direction of {what} is clockwise of where it {comes}",
+        "rad",
+        low=-np.pi,
+        high=np.pi,
+        bounds=lambda _: (-np.pi / 2.0, np.pi / 2.0),
+        typical=lambda _: 10.0 * DEG,
+        bounds_source="a right angle",
     )
 
 

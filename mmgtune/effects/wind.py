@@ -12,8 +12,8 @@ from ..physics.elementary import cos, sin, where
 from ..physics.frame import to_ship
 from ..physics.quantities import HARMONICS, Force, Forces, State, Surroundings
 from ..physics.wind import wind_shape
-from .effect import ForceEffect, Parameter, factor_on_measured
-from .signs import signed
+from .effect import ForceEffect, Parameter, factor_on_flow_measured, turned_on_measured
+from .signs import as_logged
 
 RHO_AIR = 1.225
 """Density of air [kg/m^3]."""
@@ -44,7 +44,7 @@ def wind(state: State, around: Surroundings, found: Forces, components: Any, p: 
     Where the trial has measured wind it counts, times ``measured`` and turned back by ``turned``; else the steady wind.
     No wind at all is no force: a model without this effect has the drag of still air in its resistance.
     """
-    by_log = around.wind_known * e.measured > 0.0
+    by_log = around.wind_known * np.abs(e.measured) > 0.0
     shown_north, shown_east = to_ship(e.turned, around.wind_north, around.wind_east)
     north = where(by_log, shown_north * e.measured, -e.speed * cos(e.direction))
     east = where(by_log, shown_east * e.measured, -e.speed * sin(e.direction))
@@ -64,11 +64,7 @@ def _sentence(v: Mapping[str, str]) -> str:
     told = []
     if "speed" in v:
         told.append(f"a wind of {v['speed']} blew from {v['direction']}")
-    if "measured" in v:
-        told.append(f"the wind measured in the trials acts on the ship, with {v['measured']} times its measured speed")
-    if "turned" in v:
-        off = signed(v["turned"], "clockwise", "anticlockwise")
-        told.append(f"the wind is logged {off} of where it comes from")
+    told += as_logged("wind", "comes from", v)
     return capital("; ".join(told))
 
 
@@ -96,16 +92,8 @@ EFFECT = ForceEffect(
             bounds=lambda _: (0.0, 2.0 * np.pi),
             typical=lambda _: 0.5 * np.pi,
         ),
-        "measured": factor_on_measured("the wind", 2.0, 1.0, "from no wind to twice the measured"),
-        "turned": Parameter(
-            "how far the logged direction of the wind is clockwise of where it comes from",
-            "rad",
-            low=-np.pi,
-            high=np.pi,
-            bounds=lambda _: (-np.pi / 3.0, np.pi / 3.0),
-            typical=lambda _: np.pi / 18.0,
-            bounds_source="a vane that is 60 deg off",
-        ),
+        "measured": factor_on_flow_measured("the wind", 1.0),
+        "turned": turned_on_measured("the wind", "comes from"),
         "ahead": _factor("force ahead"),
         "across": _factor("force across"),
         "turning": Parameter(

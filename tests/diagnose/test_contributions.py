@@ -970,7 +970,8 @@ def test_whether_a_cause_is_at_the_end_of_its_range(tag, ended, at_ends):
 def test_an_interval_cut_off_beside_its_value_is_at_an_end(searched, at_end, reciprocal):
     z, deviation = searched
     box = Box(("effects.a.b",), np.array([0.05]), np.array([0.5]), np.array([40.0]), reciprocal=reciprocal)
-    bench, point = SimpleNamespace(sub_box=lambda _: box), SimpleNamespace(names=box.names, unit=np.array([z]))
+    bench = SimpleNamespace(sub_box=lambda _: box, parameter=lambda _: SimpleNamespace(null=0.0))
+    point = SimpleNamespace(names=box.names, unit=np.array([z]))
     assert _in_units(bench, point, box.names, np.array([[deviation**2]]))["effects.a.b"].at_end is at_end
 
 
@@ -995,6 +996,36 @@ def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
     effect = find_effect(tag)
     sizes = {f"{effect.kind}.{name}": Estimate(name, 1.0, *ends, 1.0) for name, ends in estimated.items()}
     assert Cause(tag, effect, sizes, 0.0, None).sized is sized
+
+
+@pytest.mark.parametrize(
+    ("tag", "found", "said", "sized"),
+    [
+        ("rudder-offset", {"angle": (2.5, 1.0)}, "; by the profile the rudder stood 1° to starboard", True),
+        ("rudder-offset", {"angle": (1.1, 1.0)}, "; by the profile the rudder stood 1° to starboard", False),
+        ("rudder-offset", {"angle": (0.0, 1.0)}, "; by the profile the rudder stood 1° to starboard", True),
+        ("rudder-offset", {"angle": (2.5, None)}, "", True),
+        (
+            "wind",
+            {"speed": (8.0, 8.0), "direction": (90.0, 30.0)},
+            "; by the profile a wind of 8 m/s blew from 30°",
+            True,
+        ),
+        ("wind", {"measured": (0.5, 1.0)}, "", True),  # as whoever puts a logged wind into a profile has it
+    ],
+)
+def test_what_the_profile_has_of_a_cause_is_said_beside_it(tag, found, said, sized):
+    """ "The rudder stood 0.0 deg to starboard" of a profile with an offset of a degree that was put right since."""
+    effect, sizes = find_effect(tag), {}
+    for name, (value, stated) in found.items():
+        unit = DEG if effect.parameters[name].unit == "rad" else 1.0
+        ends = (unit * (value - 0.2), unit * (value + 0.2), 0.1 * unit)
+        own = None if stated is None else unit * stated
+        sizes[f"{effect.kind}.{name}"] = Estimate(name, unit * value, *ends, stated=own)
+    cause = Cause(tag, effect, sizes, 0.0, None)
+    assert cause.sized is sized
+    assert said in cause.sentence
+    assert ("by the profile" in cause.sentence) == bool(said)
 
 
 @pytest.mark.parametrize(

@@ -171,6 +171,44 @@ def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
     assert "of the measured wind" in result.sentence()
 
 
+WATER = {"speed": 0.4, "towards": 1.2}
+
+
+@pytest.mark.parametrize(
+    ("scale", "turned", "said"),
+    [
+        (1.0, np.pi, "acts on the ship the other way, with "),
+        pytest.param(3600.0 / 1852.0, 0.0, "its measured speed, as of knots taken for m/s", marks=pytest.mark.long),
+        pytest.param(1.0, 0.3, "The current is logged 17.1", marks=pytest.mark.long),
+    ],
+    ids=["the other way", "knots", "turned"],
+)
+def test_a_log_of_the_water_that_is_off_is_told_where_the_profile_takes_it_for_right(scale, turned, said, tmp_path):
+    north, east = (WATER["speed"] * one(WATER["towards"]) for one in (np.cos, np.sin))
+    trials = load_trials(files(replace(null(3), effects={"current": {"north": north, "east": east}}), tmp_path))
+    logs = {"current_speed": scale * WATER["speed"], "current_dir": WATER["towards"] + turned}
+    made = {
+        one.id: replace(one, extra={name: np.full(one.n_samples, value) for name, value in logs.items()})
+        for one in trials.trials.values()
+    }
+    ship = with_effects(load_profile("suzaku"), {"current": {"measured": 1.0}}, "as it was logged")
+    options = DiagnoseOptions(effects=("current", "wind", "heading-bias", "rudder-offset"))
+    result = diagnose(ship, replace(trials, trials=made), options)
+    assert [cause.tag for cause in result.causes] == ["current"], result.sentence()
+    assert said in result.sentence()
+
+
+@pytest.mark.long
+def test_what_the_profile_has_and_the_ship_has_no_more_is_told(tmp_path):
+    ship = with_effects(load_profile("suzaku"), {"rudder-offset": {"angle": np.radians(1.0)}}, "last year's trials")
+    trials = load_trials(files(null(3), tmp_path))
+    result = diagnose(ship, trials, DiagnoseOptions(effects=("rudder-offset", "current", "hull-asymmetry")))
+    assert [cause.tag for cause in result.causes] == ["rudder-offset"], result.sentence()
+    assert "; by the profile the rudder stood 1° to starboard" in result.sentence()
+    (angle,) = result.to_dict()["causes"][0]["parameters"].values()
+    assert angle["ci95"][0] < 0.0 < angle["ci95"][1]
+
+
 def test_half_a_wind_is_none():
     """A wind speed without its direction drives nothing: it leaves the constant wind to be looked for."""
     trials = load_trials("suzaku")

@@ -34,7 +34,7 @@ def variants(trials, tag, profile="suzaku"):
 def test_measured_in_any_trial_is_what_is_looked_for(trials, tag):
     n = trials[0].n_samples
     seen = replace(trials[0], extra={name: np.full(n, 6.0) for name in MEASURED[tag]})
-    turned = [("turned",), ("measured", "turned")] if tag == "wind" else []  # a vane that is not aligned
+    turned = [("turned",), ("measured", "turned")] if tag in ("wind", "current") else []  # not aligned
     assert variants([seen, trials[1]], tag) == [("measured",), *turned]
     others = [other for other in MEASURED if other != tag]
     assert all(("measured",) not in variants([seen, trials[1]], other) for other in others)
@@ -78,11 +78,18 @@ def test_what_acts_much_like_the_best_is_fitted_too(trials):
     assert akin(order, []) == []
 
 
-def test_what_the_profile_has_already_is_not_looked_for(trials):
+def test_what_the_profile_has_already_is_looked_for_from_there(trials):
+    """A log of another sense or unit, or a zero error of another day, was never asked for where the profile had it."""
     n = trials[0].n_samples
     seen = replace(trials[0], extra={name: np.full(n, 0.5) for name in MEASURED["current"]})
     own = with_effects(load_profile("suzaku"), {"current": {"measured": 1.0}}, "a test")
-    assert "current" not in {one.tag for one in known_causes(own, [seen], DiagnoseOptions())}
+    stated = {one.variant: one.stated for one in known_causes(own, [seen], DiagnoseOptions()) if one.tag == "current"}
+    assert stated == {("measured",): True, ("turned",): False, ("measured", "turned"): True}
+    several = list(load_trials("suzaku").trials.values())[:4]
+    own = with_effects(load_profile("suzaku"), {"current": {"north": 0.2}}, "a test")
+    known = known_causes(own, several, DiagnoseOptions())
+    assert all(one.stated for one in known if one.tag == "current")
+    assert "current" not in {one.tag for one in of_runs(known, several)}  # one for all, as the profile has it
 
 
 def test_what_a_profile_has_no_section_for_is_said():

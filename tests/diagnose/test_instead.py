@@ -115,7 +115,9 @@ def test_runs_of_two_days_whose_values_are_those_of_the_day(tmp_path):
     day_of = {name: f"day {1 + k % 2}" for k, name in enumerate(sorted(TUNING))}
     write(simulate({}, {}, seed=3, of_trial={name: {"current": waters[day_of[name]]} for name in TUNING}), tmp_path)
     trials = [replace(one, group=day_of[one.id]) for one in load_trials(tmp_path).trials.values() if one.id in TUNING]
-    (plain,) = (Hypothesis(find_effect("current"), one) for one in find_effect("current").variants if len(one) == 2)
+    (plain,) = (
+        Hypothesis(find_effect("current"), one) for one in find_effect("current").variants if one == ("north", "east")
+    )
     finest, days = of_runs([plain], trials)
     options = DiagnoseOptions(effects=("current",), targets=FEW)
     names = list(plain.names)

@@ -355,6 +355,26 @@ def test_every_cause_can_be_said_whichever_parameters_were_found(effect):
                 assert all(f"<{name}>" in sentence for name in variant), sentence
 
 
+@pytest.mark.parametrize(
+    ("tag", "sizes", "said"),
+    [
+        (
+            "wind",
+            {"measured": "-1.01 ± 0.02"},
+            "The wind measured in the trials acts on the ship the other way, with 1.01",
+        ),
+        ("wind", {"measured": "0.52 ± 0.02"}, "times its measured speed, as of knots taken for m/s"),
+        ("current", {"measured": "1.95 ± 0.02"}, "times its measured speed, as of m/s taken for knots"),
+        ("current", {"measured": "0.8"}, "with 0.8 times its measured speed"),
+        ("current", {"turned": "-17.2 ± 0.3°"}, "The current is logged 17.2 ± 0.3° anticlockwise of where it sets to"),
+    ],
+)
+def test_what_is_wrong_with_a_log_of_the_surroundings_is_said(tag, sizes, said):
+    sentence = find_effect(tag).sentence(sizes)
+    assert said in sentence
+    assert ("knots" in sentence) == ("knots" in said)
+
+
 def test_what_a_profile_gets_wrong_is_said(ship):
     with pytest.raises(ProfileError, match="unknown effect 'curent'"):
         parse_profile(ship.text + '\n[effects.curent]\nnorth = "1 m/s"\n')

@@ -59,15 +59,16 @@ def told_apart(linear: Linear, names: Sequence[str]) -> float:
 
 
 def _limit(bench: Workbench, name: str, sizes: float) -> float | None:
-    """Value of a parameter at ``sizes`` typical sizes from its null; None where no value of its range is that far."""
+    """Value of a parameter at ``sizes`` typical sizes from the profile's; None where no value of its range is that
+    far."""
     parameter = bench.parameter(name)
     i = bench.box.names.index(name)
     if any(i == direction for _, direction in bench.box.polar):
         return None
     step = sizes * typical(bench, name) * float(bench.box.width[i])
+    value = parameter.searched(float(bench.box.pre[i])) + step
     if any(i == size for size, _ in bench.box.polar):
-        return step if step <= bench.box.high[i] else None
-    value = parameter.searched(parameter.null) + step
+        return value if value <= bench.box.high[i] else None
     if parameter.chart == "reciprocal" and value <= bench.box.low[i]:  # nothing happens that far
         return None
     return parameter.searched(value) if value <= bench.box.high[i] else None

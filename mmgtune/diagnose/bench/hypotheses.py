@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...components import UNTAGGED
 from ...effects import Effect, effects, find_effect
@@ -27,12 +27,14 @@ class Hypothesis:
     names  of the parameters as targets, "effects.<tag>.<parameter>"
     by     the grouping of runs that have values of their own, "" for one value for all; see ``runs``
     groups labels of the groups
+    stated whether the profile has any of these parameters already: by how much that is off is looked for
     """
 
     effect: Effect
     variant: tuple[str, ...]
     by: str = ""
     groups: tuple[str, ...] = ()
+    stated: bool = False
 
     @property
     def tag(self) -> str:
@@ -90,7 +92,7 @@ def known_causes(
     profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions, *, in_place: bool = False
 ) -> list[Hypothesis]:
     """What a diagnosis of a profile on these trials looks for; ``in_place`` as for ``hypotheses``."""
-    present = [
+    stated = [
         f"{effect.kind}.{name}"
         for effect in Model(profile).effects
         for name, parameter in effect.parameters.items()
@@ -98,7 +100,7 @@ def known_causes(
     ]
     measured = frozenset[str]().union(*(measured_around(trial) for trial in trials))
     whole = Model(with_all_effects(profile))
-    return hypotheses(whole, options.targets or profile.targets, options.effects, measured, present, in_place=in_place)
+    return hypotheses(whole, options.targets or profile.targets, options.effects, measured, stated, in_place=in_place)
 
 
 def not_looked_for(profile: ShipProfile, tags: Sequence[str]) -> list[str]:
@@ -118,7 +120,7 @@ def hypotheses(
     targets: Sequence[str],
     tags: Sequence[str],
     measured: Collection[str],
-    present: Sequence[str],
+    stated: Sequence[str],
     *,
     in_place: bool = False,
 ) -> list[Hypothesis]:
@@ -128,7 +130,7 @@ def hypotheses(
     tags           effects asked for; empty for all
     measured       what any trial has of wind, current and so on; only then do parameters act that take it from there,
                    and those that stand in for it do not
-    present        parameters that the profile itself has already, at other than their null
+    stated         parameters that the profile itself has already, at other than their null
     in_place       whether to return the hypotheses that do the same as a target and would replace it, instead of the
                    others; none of many
     """
@@ -143,16 +145,18 @@ def hypotheses(
             of_log = bool(set(variant) & set(effect.of_measured))
             idle = of_log != bool(set(effect.of_measured.values()) & set(measured)) if effect.of_measured else False
             hypothesis = Hypothesis(effect, variant)
-            if not taken and not idle and not set(hypothesis.names) & {*targets, *present}:
+            hypothesis = replace(hypothesis, stated=bool(set(hypothesis.names) & set(stated)))
+            if not taken and not idle and not set(hypothesis.names) & set(targets):
                 found.append(hypothesis)
     return found
 
 
 def of_runs(known: Sequence[Hypothesis], trials: Sequence[Trial]) -> list[Hypothesis]:
-    """Hypotheses whose parameters may differ between runs, with a value for each group of runs."""
+    """Hypotheses whose parameters may differ between runs, with a value for each group of runs; what the profile states
+    is one for all."""
     return [
         Hypothesis(one.effect, one.variant, by, groups)
         for by, groups in groupings(trials).items()
         for one in known
-        if set(one.variant) <= set(one.effect.varies)
+        if set(one.variant) <= set(one.effect.varies) and not one.stated
     ]

@@ -48,19 +48,35 @@ class Cause:
             return "The integration step of the simulation is too coarse"
         if self.runs is not None:
             return self.runs.sentence
-        return self.effect.sentence(parameters_in_words(self.effect, self.estimates))
+        own = self.effect.sentence(parameters_in_words(self.effect, self.estimates))
+        return f"{own}; by the profile {small(self._stated)}" if self._stated else own
+
+    @property
+    def _stated(self) -> str:
+        """What the profile has of it, in words; "" where nothing, or what it has where nothing else is said."""
+        fields = self.effect.parameters if self.effect else {}
+        known = {
+            name: one
+            for name, one in self.estimates.items()
+            if one.stated not in (None, fields[name.rpartition(".")[2]].default)
+        }
+        plain = {name: Estimate(name, one.stated or 0.0, None, None, None) for name, one in known.items()}
+        return self.effect.sentence(parameters_in_words(self.effect, plain)) if self.effect and plain else ""
 
     @property
     def sized(self) -> bool:
-        """Whether the interval of any of its parameters leaves out the value at which it is absent."""
+        """Whether the interval of any of its parameters leaves out the value at which it is absent, or that the profile
+        has."""
         if self.effect is None or not self.estimates:
             return True
-        nulls = {name: self.effect.parameters[name].null for name in self._sizes}
+        plain, sizes, fields = self.effect.plain, self._sizes, self.effect.parameters
+        own = {name: one for name, one in self._estimated.items() if name in sizes or (name in plain and one.stated)}
+        nulls = {name: fields[name].null if one.stated is None else one.stated for name, one in own.items()}
         return any(
             not (-math.inf if one.low is None else one.low)
             <= nulls[name]
             <= (math.inf if one.high is None else one.high)
-            for name, one in self._sizes.items()
+            for name, one in own.items()
         )
 
     @property
@@ -80,8 +96,12 @@ class Cause:
         fields = [*self.effect.parameters.items()] if self.effect else []
         directions = {name for (_, before), (name, _) in pairwise(fields) if before.chart == "polar"}
         named = {name for name, _ in fields} - directions - set(self.effect.form if self.effect else ())
-        known = {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
-        return {name: one for name, one in known.items() if name in named}
+        return {name: one for name, one in self._estimated.items() if name in named}
+
+    @property
+    def _estimated(self) -> dict[str, Estimate]:
+        """Estimates by name."""
+        return {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
 
     @property
     def at_ends(self) -> bool:
@@ -103,7 +123,12 @@ class Cause:
         return {
             "effect": self.tag,
             "parameters": {
-                name: {"value": finite(e.value), "ci95": [e.low, e.high], "unit": fields[name].unit}
+                name: {
+                    "value": finite(e.value),
+                    "ci95": [e.low, e.high],
+                    "unit": fields[name].unit,
+                    "profile": None if e.stated is None else finite(e.stated),
+                }
                 for full, e in self.estimates.items()
                 for name in [full.rpartition(".")[2]]
             },

@@ -347,7 +347,8 @@ def _is_sure(bench: Workbench, found: Found, cause: Hypothesis, sizes: Mapping[s
     size, parameter = sizes[cause.names[0]], cause.effect.parameters[cause.variant[0]]
     if size.low is None or size.high is None:
         return False
-    value, null, low, high = map(parameter.searched, (size.value, parameter.null, size.low, size.high))
+    absent = parameter.null if size.stated is None else size.stated
+    value, null, low, high = map(parameter.searched, (size.value, absent, size.low, size.high))
     return abs(value - null) > SURELY * 0.5 * abs(high - low)
 
 

@@ -27,6 +27,7 @@ class Estimate:
 
     apart   of a value of single runs, the standard error of how far it is from the mean of all; else None
     at_end  whether the value is at an end of its range, which its interval ends with
+    stated  its value in the profile, None where the effect is absent there
     """
 
     name: str
@@ -36,6 +37,7 @@ class Estimate:
     stderr: float | None
     apart: float | None = None
     at_end: bool = False
+    stated: float | None = None
 
 
 def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
@@ -126,6 +128,9 @@ def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: 
         i = names.index(name)
         if i not in box.charted:
             found[name] = replace(found[name], apart=float(np.sqrt(spread_of_one) * box.width[i]))
+    for name, own in zip(names, box.pre, strict=True):
+        if not group_of(name) and own != bench.parameter(name).null:
+            found[name] = replace(found[name], stated=float(own))
     return found
 
 
