@@ -173,25 +173,26 @@ def _of_effect(
     found: list[tuple[str, float, float, float, float]] = []
     pairs: list[tuple[int, int]] = []
     parameters = list(effect.plain.items())
+    acts = any(profile.value(f"{effect.kind}.{one}") != effect.parameters[one].null for one in effect.of_measured)
     for k, (symbol, parameter) in enumerate(parameters):
         name = f"{effect.kind}.{symbol}"
         deviation = _deviation(effect, symbol, parameter, profile)
         low, high = parameter.bounds(scale)
-        acts = symbol in effect.of_measured and profile.value(name) != parameter.null
+        of_log = symbol in effect.of_measured
         if parameter.chart == "polar":
             direction = f"{effect.kind}.{parameters[k + 1][0]}"
             size, towards = profile.value(name), profile.value(direction)
             pairs.append((len(found), len(found) + 1))
             found.append((name, size * np.cos(towards), deviation, -high, high))
             found.append((direction, size * np.sin(towards), deviation, -high, high))
-        elif acts or (parameter.chart == "linear" and low < parameter.null < high):
+        elif acts if of_log else parameter.chart == "linear" and low < parameter.null < high:
             value = profile.value(name)
             found.append((name, value, deviation, min(low, value), max(high, value)))
     return found, pairs
 
 
 def _deviation(effect: Effect, symbol: str, parameter: Parameter, profile: ShipProfile) -> float:
-    if symbol in effect.of_measured:
+    if symbol in effect.of_measured and parameter.unit == "-":
         return TARGET  # a factor
     typical = float(parameter.typical(scale_of(profile)))
     if effect.tag != discrepancy.EFFECT.tag:

@@ -73,9 +73,11 @@ def test_the_force_of_a_measured_wind_has_room_where_it_acts(ship):
     acts, calm = make_room(load_profile("esso_osaka_3m")), make_room(ship)
     k = acts.names.index("effects.wind.measured")
     assert (acts.centre[k], acts.deviation[k]) == (1.0, 0.2)
+    k = acts.names.index("effects.wind.turned")
+    assert (acts.centre[k], acts.deviation[k]) == (0.0, pytest.approx(np.radians(10.0)))
     above = [name for name in acts.names if name.startswith("above_water.")]
     assert above == [name for name in acts.profile.targets if name.startswith("above_water.")] != []
-    assert not any(name.endswith(".measured") or name.startswith("above_water.") for name in calm.names)
+    assert not any(name.endswith((".measured", ".turned")) or name.startswith("above_water.") for name in calm.names)
 
 
 def test_tuned_coefficients_have_room_about_what_they_were(ship):
