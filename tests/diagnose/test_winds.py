@@ -1,12 +1,13 @@
 """Winds whose force is off the formulas, in gusts: neither hides them, nor passes for something else."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.diagnose.answering import judging
 from mmgtune.diagnose.answering.judging import _deformed
 from mmgtune.diagnose.bench import beliefs, wave_groups, winds
 from mmgtune.diagnose.bench.hypotheses import known_causes
@@ -22,10 +23,12 @@ from mmgtune.diagnose.signatures.linear import linearise
 from mmgtune.effects import find_effect
 from mmgtune.model import Model
 from mmgtune.motions import simulate_trials
+from mmgtune.physics.frame import to_ship
 from mmgtune.physics.quantities import Surroundings
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
+from tests.diagnose.evidence.made import make_trials
 from tests.diagnose.sensors import logged
 
 WIND = ("effects.wind.speed", "effects.wind.direction")
@@ -244,3 +247,65 @@ def test_what_is_assumed_of_waves_is_said_where_they_are_found():
     assert told["name"] == "groups of waves"
     assert "30 % of the mean force" in told["value"]
     assert wave_groups.in_words([lag]) == []
+
+
+@pytest.mark.long
+def test_a_wind_that_pushes_by_another_formula_is_not_two_causes():
+    """It was "a wind of 3.9 m/s, and a force of 13 kN as of waves from there"; 8 m/s blew."""
+    profile, speed, blows_from = load_profile("suzaku"), 8.0, 240.0 * DEG
+    A_T, A_L = (profile.value(f"above_water.{name}") for name in ("A_T", "A_L"))
+
+    def pushed(state):
+        north = -speed * np.cos(blows_from) - state.u * np.cos(state.psi) + state.v_m * np.sin(state.psi)
+        east = -speed * np.sin(blows_from) - state.u * np.sin(state.psi) - state.v_m * np.cos(state.psi)
+        ahead, starboard = to_ship(state.psi, north, east)
+        q, a = 0.5 * 1.225 * (ahead**2 + starboard**2), np.arctan2(-starboard, -ahead)
+        turning = -0.09 * q * A_L * profile.L_pp * np.sin(2.0 * a)
+        return -0.7 * q * A_T * np.cos(a), -0.85 * q * A_L * np.sin(a), turning
+
+    trials = make_trials(Model(profile), beside=pushed, noise=0.5)
+    result = diagnose(profile, trials, DiagnoseOptions(effects=("wind", "wave-drift", "current")))
+    (told,) = result.causes
+    assert {told.tag, *result.groups[0]} == {"wind", "wave-drift"}, result.sentence()
+    assert result.verdict == "not-separable"
+
+
+@pytest.mark.parametrize(
+    ("tags", "seen", "far", "holds", "told"),
+    [
+        (("wind", "wave-drift"), (0.03, 0.01), True, True, "wind"),
+        (("wave-drift", "wind"), (0.01, 0.03), True, True, "wind"),
+        (("wind", "wave-drift"), (0.11, 0.01), True, True, ""),
+        (("wind", "wave-drift"), (0.03, 0.01), False, True, ""),  # as the formulas of both have them
+        (("wind", "wave-drift"), (0.03, 0.01), True, False, ""),
+        (("wind", "current"), (0.03, 0.01), True, True, ""),
+    ],
+    ids=["either", "the other", "needed", "of their form", "one does not do", "unlike"],
+)
+def test_of_two_that_act_alike_one_is_told(tags, seen, far, holds, told, monkeypatch):
+    causes = [SimpleNamespace(tag=tag, effect=find_effect(tag)) for tag in tags]
+    found = SimpleNamespace(causes=causes)
+    brought = tuple((one.tag, SimpleNamespace(seen=share)) for one, share in zip(causes, seen, strict=True))
+    result = Answered(contributions=brought)
+    monkeypatch.setattr(judging, "with_only", lambda bench, found, causes: SimpleNamespace(causes=causes))
+    monkeypatch.setattr(judging, "contributions", lambda *asked: [])
+    judge = SimpleNamespace(
+        bench=None,
+        unseen=None,
+        _is_deformed=lambda found, cause: far,
+        _judged=lambda found, brought: found,
+        _compared=lambda result, found: Answered(((found.causes[0].tag, None),), (), holds, holds),
+    )
+    answer, left = judging.Judge._one_of_kin(judge, result, found)
+    assert [one.tag for one in left.causes] == ([told] if told else list(tags))
+    assert answer.groups == (((told, *({*tags} - {told})),) if told else ())
+
+
+@dataclass
+class Answered:
+    """What an answer has of those causes."""
+
+    contributions: tuple = ()
+    groups: tuple = ()
+    names_causes: bool = True
+    explains_nearly_all: bool = True

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,12 @@ OF_ANOTHER_FORM = 1.0
 A_LITTLE_OFF, NEARLY_ALL = 0.1, 0.99
 """That variance from which it may be a little off, and share of the fall of chi-squared from which an effect that acts
 much like it does as well then: wind and the drift of waves."""
+
+EITHER = 0.1
+"""Share of what all causes do that is lost without one of two that act alike, up to which the other does it all."""
+
+FORM_OFF = 2.0
+"""Standard deviations of a form from which it is another one."""
 
 OF_RUNS_OFF = 0.03
 """The same of values of each run, which bend to most of it, with what gusts are thought to leave."""
@@ -97,6 +104,7 @@ class Judge:
         """
         result = self._compared(self._judged(found, brought), found)
         result, found = self._without_doubtful(result, found, brought)
+        result, found = self._one_of_kin(result, found)
         for causes, doubted in _fewer(result, found) if result.unclear and not self.hooks.stop() else []:
             fewer = with_only(self.bench, found, causes)
             if doubted is not None and causes:
@@ -176,6 +184,31 @@ class Judge:
             trace = _trace(self.bench, Aside.of(self.bench, found, cause, brings, groups[cause.tag]))
             result, found = replace(other, traces=(*result.traces, trace)), fewer
         return result, found
+
+    def _one_of_kin(self, result: Diagnosis, found: Found) -> tuple[Diagnosis, Found]:
+        """The answer with one of two causes that act much alike, where each does nearly all that both do and both by
+        formulas far off: a wind that pushes by another formula than the model's looks like one with waves from there.
+        """
+        brings = {id(cause): one.seen for cause, (_, one) in zip(found.causes, result.contributions, strict=True)}
+        for more, less in combinations(sorted(found.causes, key=lambda cause: -brings[id(cause)]), 2):
+            alike = {more.tag, less.tag} & {*more.effect.akin, *less.effect.akin}
+            far = self._is_deformed(found, more) and self._is_deformed(found, less)
+            if alike and far and brings[id(more)] < EITHER:
+                fewer = with_only(self.bench, found, [one for one in found.causes if one is not less])
+                other = self._compared(self._judged(fewer, contributions(self.bench, fewer, self.unseen)), fewer)
+                if other.names_causes and other.explains_nearly_all:
+                    groups = {first: rest for first, *rest in other.groups}
+                    groups[more.tag] = list(dict.fromkeys([*groups.get(more.tag, []), less.tag]))
+                    told = tuple((tag, *groups[tag]) for tag, _ in other.contributions if tag in groups)
+                    return replace(other, groups=told), fewer
+        return result, found
+
+    def _is_deformed(self, found: Found, cause: Hypothesis) -> bool:
+        """Whether the form of a cause is far from what its formula has."""
+        bench, there = self.bench, dict(zip(found.final.names, found.final.unit, strict=True))
+        form = [name for name in bench.believed.form_of(cause.effect) if name in there]
+        off = np.abs([there[name] for name in form] - bench.null(form)) if form else np.zeros(0)
+        return bool(np.any(off > FORM_OFF * np.array([bench.believed.forms[name] for name in form])))
 
     def _judged(self, found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
         """The answer before its causes are compared with their rivals."""
