@@ -14,6 +14,7 @@ from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS, meant_by
 from ..phrases import counted
+from .headings import going_on
 from .metadata import as_json, noise_problems
 from .schema import ATTRIBUTES, CHANNELS
 
@@ -169,8 +170,10 @@ class Trial(Plotted):
 
 
 def fields_of(columns: Mapping[str, FloatArray]) -> dict[str, Any]:
-    """Fields of a trial out of all its columns by their names in a file, those of no field as ``extra``."""
+    """Fields of a trial out of all its columns by their names in a file, those of no field as ``extra``; a heading that
+    begins anew after a full turn goes on."""
     own: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}
+    own["psi"] = going_on(own["psi"], own["t"], own["r"])
     return own | {"extra": {name: values for name, values in columns.items() if name not in ATTRIBUTES}}
 
 

@@ -12,11 +12,12 @@ from ...components.speeds import too_fast
 from ...physics.constants import GRAVITY
 from ...physics.frame import to_earth
 from ...units import DEG
+from ..headings import full_turns
 from ..kinematics import halfway, middle
 from ..model import Trial
 from .finding import Finding
 from .in_parts import part_findings
-from .motion_checks import full_turns, spikes_of
+from .motion_checks import spikes_of
 from .position_jumps import jump_findings
 
 FASTEST = {

@@ -9,6 +9,7 @@ from ...arrays import BoolArray, FloatArray, runs_of_true
 from ...inputs import INPUTS
 from ...phrases import aboard, counted
 from ...units import DEG
+from ..headings import full_turns
 from ..kinematics import FITS, Reading, lever_of, position_misfits, stretch_of, turning
 from ..model import Trial
 from ..schema import LARGEST_YAW_RATE, MOTION
@@ -114,18 +115,6 @@ def longest_run(rows: BoolArray) -> tuple[int, int]:
     return max(runs_of_true(rows), key=lambda run: run[1] - run[0])
 
 
-NOT_UNWRAPPED = {
-    "why": "it is not unwrapped; a jump would count as a miss of 360 deg",
-    "fix": "apply numpy.unwrap to 'psi'",
-}
-"""What is said of a heading with full turns in it."""
-
-
-def full_turns(psi: FloatArray) -> BoolArray:
-    """(n_samples - 1,) where a heading [rad] jumps by a full turn from one sample to the next."""
-    return np.asarray(np.abs(np.abs(np.diff(psi)) - 2.0 * np.pi) < 1.0)
-
-
 def _jumps(trial: Trial, where: str) -> list[Finding]:
     """Heading that is not unwrapped; a gap hides how far the ship turned in it, so jumps across gaps do not count."""
     jumps = full_turns(trial.psi)
@@ -137,7 +126,8 @@ def _jumps(trial: Trial, where: str) -> list[Finding]:
             "warning",
             f"the heading jumps by a full turn {jumps.sum()} times",
             f"{where}, column 'psi', row {row}",
-            **NOT_UNWRAPPED,
+            "it is not unwrapped; a jump would count as a miss of 360 deg",
+            "apply numpy.unwrap to 'psi'",
         )
     ]
 

@@ -13,7 +13,6 @@ from ...arrays import BoolArray, FloatArray, IntArray
 from ...errors import Problem, TrialError
 from ...inputs import INPUTS
 from ...physics.constants import GRAVITY
-from ..checks.motion_checks import NOT_UNWRAPPED, full_turns
 from ..model import Trial, fields_of
 from ..pieces import cuts, named
 from ..schema import MAIN_INPUTS, MOTION
@@ -203,19 +202,10 @@ def _joined(one: Block, other: Block) -> Block:
 
 
 def _sound_headings(voyage: Voyage, block: Block, stretch: IntArray) -> None:
-    """Raises TrialError where headings of a stretch are in degrees, or jump by a full turn."""
+    """Raises TrialError where headings of a stretch are in degrees."""
     first, last = int(stretch[0]), int(stretch[-1])
     part = {name: block.columns[name][first : last + 1] for name in ("t", *MOTION)}
     with np.errstate(all="ignore"):
         problems = in_degrees(part, str(voyage.path))
-        jumps = np.flatnonzero(full_turns(part["psi"]))
-    if len(jumps) and not problems:
-        problems.append(
-            Problem(
-                "the heading jumps by a full turn",
-                f"{voyage.path}, column 'psi', row {block.row + first + int(jumps[0]) + 1}",
-                **NOT_UNWRAPPED,
-            )
-        )
     if problems:
         raise TrialError(*problems)
