@@ -76,10 +76,11 @@ def factor_about_one(what: str, off: float, typical: float, source: str) -> Para
     )
 
 
-def rudder_angle_from(what: str, typical: float) -> Parameter:
+def rudder_angle_from(what: str, typical: float, never: float) -> Parameter:
     """A rudder or inflow angle [rad] from which on something happens to either side, absent at infinity.
 
-    typical  a size worth finding [deg], which shows against an angle no rudder reaches
+    typical  a size worth finding [deg]
+    never    an angle [deg] that none reaches, where a search has it absent
     """
     return Parameter(
         what,
@@ -87,8 +88,8 @@ def rudder_angle_from(what: str, typical: float) -> Parameter:
         null=float("inf"),
         low=0.0,
         chart="reciprocal",
-        bounds=lambda _: (1.0 / (60.0 * DEG), 1.0 / (8.0 * DEG)),
-        typical=lambda _: 1.0 / (typical * DEG) - 1.0 / (60.0 * DEG),
+        bounds=lambda _: (1.0 / (never * DEG), 1.0 / (8.0 * DEG)),
+        typical=lambda _: 1.0 / (typical * DEG) - 1.0 / (never * DEG),
         bounds_source="from 8 deg to an angle no rudder reaches",
     )
 

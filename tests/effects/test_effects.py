@@ -18,6 +18,7 @@ from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.physics.quantities import UNKNOWN, State, Surroundings
 from mmgtune.profile import load_profile, missing_for, parse_profile, with_all_effects, with_effects
+from mmgtune.resources import profile_names
 from tests.backends.test_agree import zigzag_like
 from tests.runs import measured, states, turn
 
@@ -110,6 +111,35 @@ def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, base, tag):
     cases, without = base(blown, 120)
     null = states(Model(with_effects(ship, {tag: {}}, "test")), cases, backend="numpy")
     assert np.array_equal(without, null)
+
+
+def hard_over(model, seconds=60):
+    """Every input from one of its limits to the other and back; rudders to 35 deg, where none are said."""
+    t = np.arange(float(seconds))
+    approach = model.profile.approach
+    columns = []
+    for one in model.arrangement.inputs:
+        gear = model.profile.actuators.get(one.name)
+        far = {"propeller": 1.0 * (approach.n if approach else 1.0), "rudder": np.radians(35.0)}.get(one.role, 0.0)
+        low, high = (gear.low, gear.high) if gear else (-far if one.role == "rudder" else far, far)
+        columns.append(0.5 * (low + high) + 0.5 * (high - low) * np.sin(t / 10.0))
+    start = np.array([0.0, 0.0, 0.0, approach.speed if approach else 1.0, 0.0, 0.0])
+    return pad([t], [np.column_stack(columns)], [start])
+
+
+@pytest.mark.parametrize("name", profile_names())
+def test_where_a_search_has_effects_absent_they_are_not_there(name):
+    """A rudder that goes no further than 60 deg was absent of no ship whose rudders go to 105: nothing was found."""
+    profile = load_profile(name)
+    plain, model = Model(profile), Model(with_all_effects(profile))
+    cases = hard_over(plain)
+    searched = [f"{one.kind}.{symbol}" for one in model.effects for variant in one.variants for symbol in variant]
+    searched = list(dict.fromkeys(searched))
+    box = make_box(model, searched, 0.5)
+    null = box.from_unit(np.clip(box.to_unit(box.pre), 0.0, 1.0))
+    base = states(plain, cases, backend="numpy", integrator=Integrator("rk4"))[0, 0]
+    run = states(model, cases, model.matrix(searched, null[:, None]), "numpy", Integrator("rk4"))[0, 0]
+    np.testing.assert_allclose(run, base, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 3)])
