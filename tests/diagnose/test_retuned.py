@@ -139,6 +139,8 @@ def test_inertia_that_is_not_the_profile_s_is_told_though_it_is_no_target(after,
     said = weighed([moved(0.7, 0.01), inertia])
     assert said.startswith("The trials ask for radius of gyration (k_zz_) 14 ± 3 % above") == told
     assert (said == "") == (not told)
+    beside = weighed([inertia], beside=True)  # of six causes by laws a little off all six came with such a claim
+    assert ("14 % above" in beside and beside.endswith("takes up what the formula of a cause leaves.")) == told
     assert far_off([inertia]) == besides([inertia]) == in_words([inertia]) == ""
 
 

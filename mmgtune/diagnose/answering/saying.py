@@ -176,7 +176,7 @@ def _of_none(answer: Answer) -> Said:
 
 def _of_ship(answer: Answer) -> str:
     """What the trials contradict of the ship that is no target; of her hull where they are not too few for that."""
-    return weighed(answer.moved, of_hull=not answer.gain.too_few)
+    return weighed(answer.moved, of_hull=not answer.gain.too_few, beside=bool(answer.causes))
 
 
 def _in_place(answer: Answer) -> tuple[str, str]:

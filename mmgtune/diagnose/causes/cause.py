@@ -115,7 +115,8 @@ class Cause:
             return []
         ended = {full.rpartition(".")[2]: one.value for full, one in self.estimates.items() if one.at_end}
         fields = self.effect.parameters
-        return [f"{fields[name].label}, {ended[name]:.3g}" for name in self.effect.form if name in ended]
+        told = [name for name in self.effect.form if name in ended and ended[name] != fields[name].null]
+        return [f"{fields[name].label}, {ended[name]:.3g}" for name in told]
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; values in the unit named, interval ends null where infinite."""

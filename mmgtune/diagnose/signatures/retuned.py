@@ -154,10 +154,11 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     return sorted(told, key=_distance, reverse=True)
 
 
-def weighed(moved: Sequence[Retuned], of_hull: bool = True) -> str:
+def weighed(moved: Sequence[Retuned], of_hull: bool = True, beside: bool = False) -> str:
     """What the trials contradict of mass, inertia and the hull, in sentences; "" for nothing.
 
     of_hull  whether of the hull too: where the trials are told, and by more than a few
+    beside   whether causes were found, whose formulas may leave what mass and inertia take up
     """
     far = [one for one in moved if one.believed is not None and one.far]
     heavy = [one for one in far if one.name not in STEERED_BY]
@@ -165,9 +166,11 @@ def weighed(moved: Sequence[Retuned], of_hull: bool = True) -> str:
     told = []
     if heavy:
         they = "It is no target" if len(heavy) == 1 else "They are no targets"
+        sizes = listed([one.roughly if beside else one.words for one in heavy])
+        takes = f", or {'it takes' if len(heavy) == 1 else 'they take'} up what the formula of a cause leaves"
         told.append(
-            f"The trials ask for {listed([one.words for one in heavy])}. {they}: the ship may be loaded otherwise than "
-            "the profile says, or it was worked out otherwise."
+            f"The trials ask for {sizes}. {they}: the ship may be loaded otherwise than the profile says, or it was "
+            f"worked out otherwise{takes if beside else ''}."
         )
     if hull:
         takes = "it takes" if len(hull) == 1 else "they take"

@@ -321,7 +321,7 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
             cards=True,
             about=(
                 ("re-tuned", _STANDS_IN),
-                ("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),
+                ("±", "half the 95 % interval of the change, the model's form taken as right; empty at a bound"),
             ),
         )
 

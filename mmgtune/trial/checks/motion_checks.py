@@ -124,7 +124,7 @@ def _jumps(trial: Trial, where: str) -> list[Finding]:
     return [
         Finding(
             "warning",
-            f"the heading jumps by a full turn {jumps.sum()} times",
+            f"the heading jumps by a full turn {'once' if jumps.sum() == 1 else f'{jumps.sum()} times'}",
             f"{where}, column 'psi', row {row}",
             "it is not unwrapped; a jump would count as a miss of 360 deg",
             "apply numpy.unwrap to 'psi'",
