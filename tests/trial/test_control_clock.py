@@ -10,6 +10,7 @@ import pytest
 from mmgtune.resources import folder
 from mmgtune.trial import Trial, check_trial, load_trials
 from mmgtune.trial.checks.control_clock import shift_of
+from mmgtune.units import DEG
 
 from .made import made
 
@@ -67,3 +68,23 @@ def test_what_cannot_tell() -> None:
     missing = np.where(np.arange(trial.n_samples) % 2 == 0, trial.r, np.nan)
     for blind in (replace(trial, r=missing), replace(trial, delta=0.05 * trial.delta), replace(trial, r=0.0 * trial.r)):
         assert shift_of(blind) is None
+
+
+def test_a_ship_that_backs_down_is_not_steered_by_her_rudder() -> None:
+    """A crash stop of a model was "12 s after what is logged of her rudder"."""
+    late = logged_by(-60.0, TRIALS["zigzag_20"])
+    assert shift_of(late) is not None
+    astern = np.arange(late.n_samples) > 0.8 * late.n_samples
+    assert shift_of(replace(late, n=np.where(astern, -late.n, late.n))) is None
+
+
+def test_a_pair_of_rudders_turned_outward_brakes() -> None:
+    """A model that crabbed with her rudders out made "0.0103 m with each turn of the propeller: too little"."""
+    straight = made(angle=0.0, samples=120)
+    n = np.full(straight.n_samples, straight.u.mean() / (0.001 * 80.0))
+    brakes = np.full(straight.n_samples, 75.0 * DEG)
+    said = [one.what for one in check_trial(replace(straight, n=n), 80.0)]
+    assert any("with each turn of the propeller" in one for one in said)
+    out = {"delta_port": -brakes, "delta_stbd": brakes}
+    crabbing = replace(straight, n=n, extra=out)
+    assert not any("with each turn of the propeller" in one.what for one in check_trial(crabbing, 80.0))

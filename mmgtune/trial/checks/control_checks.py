@@ -79,7 +79,7 @@ def _gaps(name: str, values: FloatArray, where: str) -> Finding | None:
 def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
     """A ship going ahead turns towards its rudder; only an overshoot goes the other way, and that one slows down."""
     delta = trial.columns[name]
-    over = (np.abs(delta) > 3.0 * DEG) & np.isfinite(trial.r) & (trial.u > 0.0) & (trial.n > 0.0) & _steering(trial)
+    over = (np.abs(delta) > 3.0 * DEG) & np.isfinite(trial.r) & (trial.u > 0.0) & (trial.n > 0.0) & steered(trial)
     if over.sum() < 20:
         return None
     side = np.sign(delta)
@@ -98,10 +98,14 @@ def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
     )
 
 
-def _steering(trial: Trial) -> BoolArray:
+def steered(trial: Trial) -> BoolArray:
     """Samples at which no rudder is as far over as only those do that brake: turned outward, a pair steers little."""
-    rudders = [trial.columns[name] for name in RUDDERS if name in trial.columns]
-    return np.asarray(np.max(np.abs(rudders), axis=0) < BRAKING)
+    return np.asarray(np.max(np.abs(rudders_of(trial)), axis=0) < BRAKING)
+
+
+def rudders_of(trial: Trial) -> FloatArray:
+    """(n_rudders, n_samples) angles of all rudders that are logged, of several their mean too [rad]."""
+    return np.array([trial.columns[name] for name in RUDDERS if name in trial.columns])
 
 
 def _rudder_speed(trial: Trial, name: str, where: str) -> Finding | None:

@@ -9,6 +9,7 @@ from ...physics.following import followed
 from ...units import DEG
 from ..model import Trial
 from ..schema import RUDDERS
+from .control_checks import rudders_of, steered
 from .finding import Finding, Shift
 
 LEAST_RUDDER = 4.0 * DEG
@@ -19,7 +20,7 @@ STEPS, TIMES, SHIFTS, FINER, COARSE = 1000, 12, 60, 10, 4
 which all samples are looked at: of so many one before."""
 
 KNOWN = 0.9
-"""Share of yaw rates that must be measured."""
+"""Share of yaw rates that must be measured, and of samples at which she must be steered by rudders, going ahead."""
 
 FOLLOWS, MISSES, BETTER = 0.15, 0.1, 3.0
 """Share of the variance of the yaw rate that following the shifted rudder may leave, what following it as logged leaves
@@ -57,7 +58,9 @@ def shift_of(trial: Trial) -> tuple[float, float, float] | None:
     The yaw rate follows the rudder with a lag of first order (assumption), of whichever time constant fits best.
     """
     known = np.isfinite(trial.r)
-    rudder = np.mean([trial.columns[name] for name in RUDDERS if name in trial.columns], axis=0)
+    if np.mean(steered(trial) & (trial.n > 0.0)) < KNOWN:  # she turns by her engine, or by rudders that brake
+        return None
+    rudder = np.mean(rudders_of(trial), axis=0)
     if not np.isfinite(rudder).all() or known.mean() < KNOWN or np.ptp(rudder) < LEAST_RUDDER:
         return None
     duration = float(trial.t[-1] - trial.t[0])

@@ -15,6 +15,7 @@ from ...units import DEG
 from ..headings import full_turns
 from ..kinematics import halfway, middle
 from ..model import Trial
+from .control_checks import rudders_of, steered
 from .finding import Finding
 from .in_parts import part_findings
 from .motion_checks import spikes_of
@@ -29,6 +30,8 @@ FASTEST_SHIP = 60.0
 """Speed [m/s] that no ship makes, whatever her length."""
 AMIDSHIPS = 3.0 * DEG
 """Rudder angle below which a ship goes about straight on."""
+OUTWARD = 10.0 * DEG
+"""Angle of any rudder from which a pair of them, turned outward, takes off way."""
 FEWEST = 5
 """Samples of an approach that say anything."""
 STEADY = 0.1
@@ -160,10 +163,11 @@ def way_finding(way: float, L_pp: float, trial: Trial, where: str, as_others: bo
 
 
 def usual_way(trial: Trial) -> float | None:
-    """Metres ahead with each turn of the propeller, whatever the ship does; None where she hardly goes ahead."""
+    """Metres ahead with each turn of the propeller, unless rudders brake; None where she hardly goes ahead."""
     u, n = trial.u, trial.n
     known = np.isfinite(u)
     ahead = known & (u > 0.5 * np.nanmax(np.where(known, u, -np.inf))) & (n > 0.2 * float(np.abs(n).max()))
+    ahead &= steered(trial)
     return float(np.median(u[ahead] / n[ahead])) if ahead.sum() >= 20 else None
 
 
@@ -172,6 +176,7 @@ def way_per_turn(trial: Trial) -> float | None:
     with np.errstate(all="ignore"):
         straight = (np.abs(trial.delta) < AMIDSHIPS) & (trial.u > 0.0) & (trial.n > 0.3 * np.abs(trial.n).max())
         straight &= trial.u > 0.5 * np.nanmax(trial.u, initial=0.0)  # not while she gathers way
+        straight &= np.max(np.abs(rudders_of(trial)), axis=0) < OUTWARD
         end = len(straight) if straight.all() else int(np.argmin(straight))
         if end < FEWEST:
             return None
