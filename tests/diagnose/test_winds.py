@@ -271,19 +271,20 @@ def test_a_wind_that_pushes_by_another_formula_is_not_two_causes():
 
 
 @pytest.mark.parametrize(
-    ("tags", "seen", "far", "holds", "told"),
+    ("tags", "by", "seen", "far", "holds", "told"),
     [
-        (("wind", "wave-drift"), (0.03, 0.01), True, True, "wind"),
-        (("wave-drift", "wind"), (0.01, 0.03), True, True, "wind"),
-        (("wind", "wave-drift"), (0.11, 0.01), True, True, ""),
-        (("wind", "wave-drift"), (0.03, 0.01), False, True, ""),  # as the formulas of both have them
-        (("wind", "wave-drift"), (0.03, 0.01), True, False, ""),
-        (("wind", "current"), (0.03, 0.01), True, True, ""),
+        (("wind", "wave-drift"), "", (0.03, 0.01), True, True, "wind"),
+        (("wave-drift", "wind"), "", (0.01, 0.03), True, True, "wind"),
+        (("wind", "wave-drift"), "", (0.11, 0.01), True, True, ""),
+        (("wind", "wave-drift"), "", (0.03, 0.01), False, True, ""),  # as the formulas of both have them
+        (("wind", "wave-drift"), "", (0.03, 0.01), True, False, ""),
+        (("wind", "wave-drift"), "trial", (0.03, 0.01), True, True, ""),  # values of runs bend to anything
+        (("wind", "current"), "", (0.03, 0.01), True, True, ""),
     ],
-    ids=["either", "the other", "needed", "of their form", "one does not do", "unlike"],
+    ids=["either", "the other", "needed", "of their form", "one does not do", "of each run", "unlike"],
 )
-def test_of_two_that_act_alike_one_is_told(tags, seen, far, holds, told, monkeypatch):
-    causes = [SimpleNamespace(tag=tag, effect=find_effect(tag)) for tag in tags]
+def test_of_two_that_act_alike_one_is_told(tags, by, seen, far, holds, told, monkeypatch):
+    causes = [SimpleNamespace(tag=tag, effect=find_effect(tag), by=by) for tag in tags]
     found = SimpleNamespace(causes=causes)
     brought = tuple((one.tag, SimpleNamespace(seen=share)) for one, share in zip(causes, seen, strict=True))
     result = Answered(contributions=brought)

@@ -247,6 +247,7 @@ def test_positions_that_only_seem_to_jump(seed: int) -> None:
     unknown = np.where(np.isin(trial.t, (100, 250, 251, 252)), np.nan, trial.u)
     long = np.where((trial.t > 150) & (trial.t < 260), np.nan, trial.u)
     outlier = trial.y + 12.0 * (trial.t == 300)
+    burst = trial.x + np.select([trial.t == 300, trial.t == 301, trial.t == 302], [13.0, 14.0, 12.0])
     for other in (
         replace(trial, x=spiked),
         replace(trial, x=trial.x[held], y=trial.y[held]),
@@ -256,6 +257,7 @@ def test_positions_that_only_seem_to_jump(seed: int) -> None:
         replace(trial, u=unknown, v_m=unknown - trial.u + trial.v_m),
         replace(trial, u=long),
         replace(trial, y=outlier),
+        replace(trial, x=burst, y=trial.y - burst + trial.x),
         replace(trial, u=trial.u[0] + 0.0 * trial.u),
     ):
         assert not [one for one in warnings_of(other) if "position jumps" in one]

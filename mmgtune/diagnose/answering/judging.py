@@ -190,7 +190,8 @@ class Judge:
         formulas far off: a wind that pushes by another formula than the model's looks like one with waves from there.
         """
         brings = {id(cause): one.seen for cause, (_, one) in zip(found.causes, result.contributions, strict=True)}
-        for more, less in combinations(sorted(found.causes, key=lambda cause: -brings[id(cause)]), 2):
+        alike_in_all = [cause for cause in found.causes if not cause.by]
+        for more, less in combinations(sorted(alike_in_all, key=lambda cause: -brings[id(cause)]), 2):
             alike = {more.tag, less.tag} & {*more.effect.akin, *less.effect.akin}
             far = self._is_deformed(found, more) and self._is_deformed(found, less)
             if alike and far and brings[id(more)] < EITHER:

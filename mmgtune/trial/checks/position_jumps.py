@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 
 from ...arrays import FloatArray, runs_of_true
@@ -25,6 +27,8 @@ out costs nothing."""
 AWAY, NEAR = 6.0, 2.0
 """How many times the usual misfit of the line that follows the first position exceeds where it is off, and up to which
 those after it are of the track."""
+OUTLIERS, LEFT_OUT = 6, 3
+"""Samples on each side of a step that may be outliers, and how many of them may be, a quarter at most."""
 WAY = 1.0
 """Way [s] at the ship's speed that a step exceeds: what is smaller hardly matters."""
 
@@ -106,23 +110,30 @@ def _without_way(trial: Trial, n: int) -> list[FloatArray] | None:
 
 
 def _stays(around: list[FloatArray], least: float) -> bool:
-    """Whether a step in the middle of two channels (2 n,) exceeds ``least`` whichever one sample is left out.
+    """Whether a step in the middle of two channels (2 n,) exceeds ``least`` whichever few samples are left out on each
+    side of it.
 
     An outlier comes back at the next sample: without it there is no step.
     """
     n = len(around[0]) // 2
+    places = np.column_stack(around)
     k = np.arange(2 * n, dtype=np.float64) - n + 0.5
-    for out in range(2 * n):
-        step = []
-        for one in around:
-            ends = []
-            for half in (np.arange(n), np.arange(n, 2 * n)):
-                rows = half[half != out]
-                ends.append(float(np.polynomial.polynomial.polyfit(k[rows], one[rows], 1)[0]))
-            step.append(ends[1] - ends[0])
-        if np.hypot(step[0], step[1]) < least:
-            return False
-    return True
+    before, behind = (_ends(k[half], places[half]) for half in (slice(n), slice(n, 2 * n)))
+    steps = behind[None] - before[:, None]
+    return float(np.hypot(steps[..., 0], steps[..., 1]).min()) >= least
+
+
+def _ends(k: FloatArray, places: FloatArray) -> FloatArray:
+    """Where lines through places (n, 2) at k (n,) are at 0, (n_lines, 2): through all of them, and without one, two or
+    three of those that are furthest from the others, as far as enough are left."""
+    off = np.hypot(*(places - np.median(places, axis=0)).T)
+    furthest = np.argsort(-off)[:OUTLIERS]
+    ends = []
+    for few in range(min(LEFT_OUT, len(k) // 4) + 1):
+        for out in combinations(furthest.tolist(), few):
+            kept = np.delete(np.arange(len(k)), out)
+            ends.append(np.polynomial.polynomial.polyfit(k[kept], places[kept], 1)[0])
+    return np.array(ends)
 
 
 def _without_spikes(trial: Trial, name: str) -> FloatArray:
