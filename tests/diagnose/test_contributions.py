@@ -29,7 +29,7 @@ from mmgtune.diagnose.causes.contributions import (
     squares,
     takes_the_rest,
 )
-from mmgtune.diagnose.causes.doubted import Leading
+from mmgtune.diagnose.causes.doubted import Doubted, Leading
 from mmgtune.diagnose.evidence.leftover import Leftover, _slow
 from mmgtune.diagnose.held_out.gain import BAND, expected, held_out
 from mmgtune.diagnose.held_out.unseen import Unseen
@@ -996,6 +996,15 @@ def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
     effect = find_effect(tag)
     sizes = {f"{effect.kind}.{name}": Estimate(name, 1.0, *ends, 1.0) for name, ends in estimated.items()}
     assert Cause(tag, effect, sizes, 0.0, None).sized is sized
+
+
+def test_a_sum_that_is_doubted_says_what_has_values_of_runs():
+    """ "More would be removed by current", of a current that was named."""
+    causes = (SimpleNamespace(tag="current", runs=None), SimpleNamespace(tag="wind", runs="one each"))
+    whole = SimpleNamespace(contributions=(("current", None), ("wind", None)), unclear="they bend", causes=causes)
+    doubted = Doubted.of(whole)
+    assert doubted.sentence.startswith("More would be removed by current + wind of each run, but they bend, ")
+    assert doubted.to_dict() == {"effects": ["current", "wind"], "why": "they bend"}
 
 
 @pytest.mark.parametrize(

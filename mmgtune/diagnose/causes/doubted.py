@@ -20,19 +20,24 @@ class Doubted:
 
     effects  their tags
     why      what speaks against it, in words
+    by_run   tags of those that have a value of each run
     """
 
     effects: tuple[str, ...]
     why: str
+    by_run: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, answer: Belief) -> Doubted:
         """The causes of an answer that is unclear."""
-        return cls(tuple(tag for tag, _ in answer.contributions), answer.unclear)
+        by_run = tuple(dict.fromkeys(cause.tag for cause in answer.causes if cause.runs))
+        return cls(tuple(tag for tag, _ in answer.contributions), answer.unclear, by_run)
 
     @property
     def sentence(self) -> str:
-        sum_ = " + ".join(dict.fromkeys(self.effects))
+        """What would explain more, and why it is not believed."""
+        tags = dict.fromkeys(self.effects)
+        sum_ = " + ".join(f"{tag} of each run" if tag in self.by_run else tag for tag in tags)
         return f"More would be removed by {sum_}, but {self.why}, so the rest has no name."
 
     def to_dict(self) -> dict[str, Any]:
