@@ -171,6 +171,14 @@ def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
     assert "of the measured wind" in result.sentence()
 
 
+@pytest.mark.long
+def test_a_limit_that_one_run_reaches_is_found(tmp_path):
+    """A refit from 28 deg stepped beyond all angles there are: a gain of the rudder that differed between runs."""
+    case = single("rudder-limit", 1, seed=2)
+    result = said_of(case, tmp_path)
+    assert outcome(case.effects, result.to_dict()) == "right", result.sentence()
+
+
 WATER = {"speed": 0.4, "towards": 1.2}
 
 

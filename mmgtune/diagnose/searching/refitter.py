@@ -46,6 +46,11 @@ SIZES = (1.0, 0.5, 2.0, 0.25)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
 
 
+OTHER_SIZES, LOST = (0.85, 0.7, 0.5, 2.0), 0.1
+"""Sizes at which such a refit starts where less than that share of what its score promises came of it: from a limit of
+the rudder at 28 deg a step may lead beyond all angles there are, where nothing leads back to 39."""
+
+
 class Stopped(Exception):
     """Raised where a look was stopped before its end; it has no result."""
 
@@ -181,6 +186,9 @@ class Refitter:
         else:
             ends = self.steps(self.point, score, self.starts(self.point, score, SIZES[:1]), ROUGH)
             ends += self._from_one_for_all(score)
+            sided = not score.hypothesis.by and bool(inwards(self.bench.null(names)).any())
+            if sided and self.point.chi2 - min(end.chi2 for end in ends) < LOST * score.score:
+                ends += self.steps(self.point, score, self.starts(self.point, score, OTHER_SIZES), ROUGH)
         return min(ends, key=lambda end: end.foreseen)
 
     def _from_one_for_all(self, score: Score) -> list[Point]:
