@@ -175,8 +175,7 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     lines += ["", f"verdict: {result.verdict}", result.sentence()]
     if result.record:
         lines.append(result.record.sentence)
-    told = [trace.sentence for trace in result.traces]
-    lines += [*told[:1], *(one.replace("a trace of one more", "a trace of another", 1) for one in told[1:])]
+    lines += [trace.told("another" if k else "one more") for k, trace in enumerate(result.traces)]
     where = f"J held out ({result.gain.words}; {result.gain.method})"
     named = result.causes and result.verdict != "unexplained" and not result.interrupted
     if named and before is not None and after is not None:

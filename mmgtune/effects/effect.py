@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -16,6 +16,10 @@ from .visited import Visited
 
 MOVING, TRIED = State(x=1.0, y=2.0, psi=0.3, u=1.0, v_m=-0.2, r=0.1), 0.01
 """A ship that moves every way [m, rad, m/s, rad/s], and how far from its null a sensor's parameter is tried on her."""
+
+
+FASTER = 2.5
+"""Factor on a logged wind or current up to which it is looked for."""
 
 
 class Scale(NamedTuple):
@@ -76,11 +80,11 @@ def factor_about_one(what: str, off: float, typical: float, source: str) -> Para
     )
 
 
-def rudder_angle_from(what: str, typical: float, never: float) -> Parameter:
-    """A rudder or inflow angle [rad] from which on something happens to either side, absent at infinity.
+def rudder_angle_from(what: str, typical: float) -> Parameter:
+    """A rudder or inflow angle [rad] from which on something happens to either side, absent at infinity; in a search at
+    half a turn, which none reaches.
 
     typical  a size worth finding [deg]
-    never    an angle [deg] that none reaches, where a search has it absent
     """
     return Parameter(
         what,
@@ -88,8 +92,8 @@ def rudder_angle_from(what: str, typical: float, never: float) -> Parameter:
         null=float("inf"),
         low=0.0,
         chart="reciprocal",
-        bounds=lambda _: (1.0 / (never * DEG), 1.0 / (8.0 * DEG)),
-        typical=lambda _: 1.0 / (typical * DEG) - 1.0 / (never * DEG),
+        bounds=lambda _: (1.0 / np.pi, 1.0 / (8.0 * DEG)),
+        typical=lambda _: 1.0 / (typical * DEG) - 1.0 / np.pi,
         bounds_source="from 8 deg to an angle no rudder reaches",
     )
 
@@ -118,20 +122,6 @@ def velocity_of_water(what: str) -> Parameter:
         bounds=lambda ship: (-0.6 * ship.U, 0.6 * ship.U),
         typical=lambda ship: 0.05 * ship.U,
         bounds_source="six tenths of the approach speed",
-    )
-
-
-def factor_on_flow_measured(what: str, typical: float) -> Parameter:
-    """As ``factor_on_measured``, on a wind or a current; below 0 where its direction was logged the other way round."""
-    return Parameter(
-        f"factor on {what} measured in the trial, below 0 where it goes the other way",
-        default=1.0,
-        low=-5.0,
-        high=5.0,
-        null=0.0,
-        bounds=lambda _: (-2.5, 2.5),
-        typical=lambda _: typical,
-        bounds_source="more than m/s that were taken for knots, either way",
     )
 
 
@@ -166,6 +156,14 @@ def turned_on_measured(what: str, comes: str) -> Parameter:
         typical=lambda _: 10.0 * DEG,
         bounds_source="a right angle",
     )
+
+
+def factor_on_flow_measured(what: str, typical: float) -> Parameter:
+    """As ``factor_on_measured``, on a wind or a current; below 0 where its direction was logged the other way round."""
+    source = "more than m/s that were taken for knots, either way"
+    plain = factor_on_measured(what, FASTER, typical, source)
+    label = f"{plain.label}, below 0 where it goes the other way"
+    return replace(plain, label=label, low=-5.0, bounds=lambda _: (-FASTER, FASTER))
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -36,7 +36,7 @@ EFFECT = ActuatorEffect(
     function=rudder_limit,
     cites=(),
     fields={
-        "angle": rudder_angle_from("angle beyond which the rudder does not go, to either side", 28.0, 180.0),
+        "angle": rudder_angle_from("angle beyond which the rudder does not go, to either side", 28.0),
     },
     akin=("rudder-stall", "rudder-gain"),
     variants=(("angle",),),

@@ -60,7 +60,7 @@ EFFECT = ForceEffect(
     function=rudder_stall,
     cites=(),
     fields={
-        "angle": rudder_angle_from("effective inflow angle at which the rudder stalls", 25.0, 180.0),
+        "angle": rudder_angle_from("effective inflow angle at which the rudder stalls", 25.0),
         "slope": Parameter(
             "share of its slope that the force keeps beyond that angle; negative where it falls",
             low=-3.0,

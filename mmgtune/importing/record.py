@@ -13,6 +13,7 @@ from .. import units
 from ..arrays import BoolArray, FloatArray
 from ..errors import LogError, Problem
 from ..phrases import listed
+from ..trial.headings import unwrapped
 from .cells.degrees import DDMM
 from .cells.digits import print_step, within_digits
 from .cells.headers import unit_in
@@ -356,14 +357,3 @@ def converted(name: str, values: FloatArray, source: Source, unit: str) -> Float
     if source.offset:
         out = out + source.offset
     return unwrapped(out, turn) if quantity.angle else out
-
-
-def unwrapped(values: FloatArray, turn: float) -> FloatArray:
-    """Angles (n_samples,) without jumps of a full turn; NaN stays where it is and does not count."""
-    known = np.isfinite(values)
-    out = np.array(values)
-    if known.any():
-        steps = np.diff(out[known])
-        jumps = np.round(steps / turn)
-        out[known] -= turn * np.concatenate([[0.0], np.cumsum(jumps)])
-    return out

@@ -38,6 +38,17 @@ def going_on(psi: FloatArray, t: FloatArray, r: FloatArray) -> FloatArray:
     size = float(told[near] @ told[near])
     agrees = size > 0.0 and BELIEVED[0] < float(steps[near] @ told[near]) / size < BELIEVED[1]
     expected = np.where(agrees & (np.diff(known) > 1), told, 0.0)
-    found = np.array(psi)
-    found[known] -= TURN * np.concatenate([[0.0], np.cumsum(np.round((steps - expected) / TURN))])
-    return found
+    return unwrapped(psi, TURN, expected)
+
+
+def unwrapped(values: FloatArray, turn: float = TURN, expected: FloatArray | float = 0.0) -> FloatArray:
+    """Angles (n_samples,) without jumps of a full turn; NaN stays where it is and does not count.
+
+    expected  how far each of the known is from the one before, where that is known to less than half a turn
+    """
+    known = np.isfinite(values)
+    out = np.array(values)
+    if known.any():
+        jumps = np.round((np.diff(out[known]) - expected) / turn)
+        out[known] -= turn * np.concatenate([[0.0], np.cumsum(jumps)])
+    return out

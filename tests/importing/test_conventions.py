@@ -5,7 +5,8 @@ import pytest
 
 from mmgtune.importing import conventions, parse_map
 from mmgtune.importing.maps.mapping import Source
-from mmgtune.importing.record import converted, unwrapped
+from mmgtune.importing.record import converted
+from mmgtune.trial.headings import unwrapped
 from mmgtune.units import DEG, KNOT
 from tests.importing.made import MAP, imported, logged, refusal, said, suzaku, turn, write_csv
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from ...components import UNTAGGED
 from ...effects import Effect, effects, find_effect
@@ -144,10 +144,9 @@ def hypotheses(
                 taken = not taken or effect.one_of_many
             of_log = bool(set(variant) & set(effect.of_measured))
             idle = of_log != bool(set(effect.of_measured.values()) & set(measured)) if effect.of_measured else False
-            hypothesis = Hypothesis(effect, variant)
-            hypothesis = replace(hypothesis, stated=bool(set(hypothesis.names) & set(stated)))
-            if not taken and not idle and not set(hypothesis.names) & set(targets):
-                found.append(hypothesis)
+            own = {f"{effect.kind}.{name}" for name in variant}
+            if not taken and not idle and not own & set(targets):
+                found.append(Hypothesis(effect, variant, stated=bool(own & set(stated))))
     return found
 
 

@@ -154,15 +154,19 @@ class Trace:
     @property
     def sentence(self) -> str:
         """What it is, and why it is no more than that."""
+        return self.told("one more")
+
+    def told(self, which: str) -> str:
+        """The sentence, of "one more" or of "another" where there was one before."""
         if self.alike:
             told = f"too little to be told: {' or '.join((self.cause.tag, *self.alike))}, or coefficients that are off"
-            return f"There is a trace of one more, {told}. If the first: {small(self.words)}."
+            return f"There is a trace of {which}, {told}. If the first: {small(self.words)}."
         why = "it changes nothing that would be noticed"
         if self.contribution.like_hull:
             why = "a hull further off than believed would explain it as well"
         elif self.contribution.harmful:
             why = "held-out trials are told no better with it"
-        return f"There is a trace of one more, left out as {why}: {small(self.words)}."
+        return f"There is a trace of {which}, left out as {why}: {small(self.words)}."
 
     @property
     def words(self) -> str:

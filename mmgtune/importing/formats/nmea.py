@@ -16,12 +16,13 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import LogError, Problem
+from ...trial.headings import unwrapped
 from ...units import DEG, KNOT, factors
 from ..cells.periods import DAY
 from ..clock import put_right
 from ..maps.mapping import LogMap, TimeSource
 from ..maps.quantities import AGAINST, QUANTITIES, meaning, quantity_of
-from ..record import Record, Series, unwrapped
+from ..record import Record, Series
 from .table import MOST_ROWS
 
 SENTENCES = {

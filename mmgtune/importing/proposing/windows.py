@@ -10,10 +10,10 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...trial.checks.motion_checks import spikes
+from ...trial.headings import unwrapped
 from ..cells.seldom import held
 from ..clock import uniform
 from ..maps.mapping import TimeSource
-from ..record import unwrapped
 
 MOST = 120
 """Windows of a log."""

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...arrays import FloatArray
+from ...trial.headings import unwrapped
 from ..wording import CHANNELS, Channel
 from .plot import DASHES_OF, Look
 
@@ -214,14 +215,6 @@ def spread(columns: Sequence[FloatArray], size: int, limit: int) -> npt.NDArray[
             if np.isfinite(part).any():
                 keep.append(np.array([first + np.nanargmin(part), first + np.nanargmax(part)], dtype=np.intp))
     return np.unique(np.concatenate(keep))
-
-
-def unwrapped(psi: FloatArray) -> FloatArray:
-    """A heading without jumps of a full turn, gaps left as they are."""
-    good = np.isfinite(psi)
-    smooth = psi.copy()
-    smooth[good] = np.unwrap(psi[good])
-    return smooth
 
 
 def _whole_turns(psi: FloatArray) -> float:

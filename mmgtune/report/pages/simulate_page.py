@@ -12,6 +12,7 @@ import numpy as np
 
 from ...how_far_off import mean
 from ...manoeuvres.named import in_order
+from ...trial.headings import unwrapped
 from .. import advice, approaches, codes, measures, motion_block
 from ..blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
 from ..common import doubts, made_table
@@ -100,7 +101,7 @@ def _off(record: SimulationRecord) -> tuple[float | None, float | None]:
         if np.isfinite(gap).any():
             with np.errstate(over="ignore"):  # of a run that diverged
                 places.append(float(np.sqrt(np.nanmean(gap**2))))
-        one, other = (motions.unwrapped(found[which]["psi"]) for which in ("simulated", "measured"))
+        one, other = (unwrapped(found[which]["psi"]) for which in ("simulated", "measured"))
         if one.shape == other.shape:
             error = one - other - motions.turns(one, other)
             if np.isfinite(error).any():
