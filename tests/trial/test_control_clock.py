@@ -80,7 +80,7 @@ def test_a_ship_that_backs_down_is_not_steered_by_her_rudder() -> None:
 
 def test_a_pair_of_rudders_turned_outward_brakes() -> None:
     """A model that crabbed with her rudders out made "0.0103 m with each turn of the propeller: too little"."""
-    straight = made(angle=0.0, samples=120)
+    straight = made(angle=0.0, samples=300)
     n = np.full(straight.n_samples, straight.u.mean() / (0.001 * 80.0))
     brakes = np.full(straight.n_samples, 75.0 * DEG)
     said = [one.what for one in check_trial(replace(straight, n=n), 80.0)]
