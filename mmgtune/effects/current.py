@@ -30,20 +30,30 @@ def current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lane
     Where the trial has measured current it counts, times ``measured`` and turned back by ``turned``; else one that is
     linear in time.  With velocities through water the equations of motion hold unchanged (Mathioudakis et al., eq. 9).
     """
-    by_log = around.current_known * np.abs(e.measured) > 0.0
-    shown_north, shown_east = to_ship(e.turned, around.current_north, around.current_east)
-    north = where(by_log, shown_north * e.measured, e.north + e.north_rate * around.elapsed)
-    east = where(by_log, shown_east * e.measured, e.east + e.east_rate * around.elapsed)
-    ahead, starboard = to_ship(state.psi, north, east)
-    return ahead, starboard
+    north, east = e.north + e.north_rate * around.elapsed, e.east + e.east_rate * around.elapsed
+    return _in_the_ship(state, around, e, around.current_north, around.current_east, north, east)
 
 
 def rate_of_current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
     """How fast the current changes over ground, in the ship's axes [m/s^2]: constant between two samples."""
+    logged_north, logged_east = around.current_north_rate, around.current_east_rate
+    return _in_the_ship(state, around, e, logged_north, logged_east, e.north_rate, e.east_rate)
+
+
+def _in_the_ship(
+    state: State,
+    around: Surroundings,
+    e: Current,
+    logged_north: Lanes,
+    logged_east: Lanes,
+    north: Lanes,
+    east: Lanes,
+) -> tuple[Lanes, Lanes]:
+    """What was logged, or where nothing was what is given beside it, along the ship's axes."""
     by_log = around.current_known * np.abs(e.measured) > 0.0
-    shown_north, shown_east = to_ship(e.turned, around.current_north_rate, around.current_east_rate)
-    north = where(by_log, shown_north * e.measured, e.north_rate)
-    east = where(by_log, shown_east * e.measured, e.east_rate)
+    shown_north, shown_east = to_ship(e.turned, logged_north, logged_east)
+    north = where(by_log, shown_north * e.measured, north)
+    east = where(by_log, shown_east * e.measured, east)
     ahead, starboard = to_ship(state.psi, north, east)
     return ahead, starboard
 

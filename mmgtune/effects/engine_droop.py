@@ -85,6 +85,7 @@ EFFECT = ForceEffect(
     akin=("rpm-scale",),
     variants=(("share",),),
     of_parts=("propeller", "rudder"),
+    rough=True,
     unvisited=unvisited,
     sentence=lambda v: (
         "The engine gave way under load: with no way on the ship the propeller would turn slower than the log says by "
