@@ -5,6 +5,7 @@ Every fix names a key of the map.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,8 +28,14 @@ DRIFTS = 2.0 * DEG
 """Difference of heading and integrated yaw rate [rad] over a run up to which nothing is said of a steady drift."""
 STEADY = 0.9
 """Share of a difference that a straight line in time must explain to be a drift."""
+PARTS, CERTAIN = 8, 5.0
+"""Parts of a run of which each tells how fast it drifts, and standard errors of their mean from which it is steady."""
+LARGEST_FACTOR = 2.0
+"""Factor on a yaw rate, or one over it, up to which a gyro may be off."""
 TELLS = 0.8
 """Share of what is left of the positions that a lever must explain to be named."""
+FAR_LESS = 0.5
+"""Share that a lever must leave at most of what velocities that are off steadily would."""
 APART = 4.0
 """How many times as much must be left along one axis as along the other to be said."""
 OTHER_UNITS = (
@@ -102,10 +109,15 @@ def gyro_drift(trial: Trial, where: str) -> list[Finding]:
     if max(in_time, by_turning) < STEADY or max(abs(drift), float(np.ptp(off))) < DRIFTS:
         return []
     for ratio, name, why in OTHER_UNITS:
-        if abs(np.log(turned.ratio / ratio)) < SAME_UNIT and abs(turned.correlation) > TURNS_ALIKE:
+        if abs(turned.ratio / ratio - 1.0) < SAME_UNIT and abs(turned.correlation) > TURNS_ALIKE:
             what = f"the heading turns {turned.ratio:.3g} times as far as the yaw rate says"
             fix = f"say its unit in [columns.{name}], and header_says where the header has another"
             return [Finding("warning", what, where, why, fix)]
+    in_time = in_time if _is_steady(t, off) else 0.0
+    likely = 1.0 / LARGEST_FACTOR < 1.0 + factor < LARGEST_FACTOR
+    by_turning = by_turning if likely and _is_steady(turned.yaw, off) else 0.0
+    if max(in_time, by_turning) < STEADY:
+        return []
     what = f"heading and integrated yaw rate drift apart by {float(np.ptp(off)) / DEG:.3g} deg over the run"
     scale = f"a factor of {1.0 + factor:.4g} on the yaw rate explains {100.0 * by_turning:.0f} % of it"
     if by_turning > in_time + 0.05:
@@ -128,6 +140,19 @@ def gyro_drift(trial: Trial, where: str) -> list[Finding]:
         why += "; the course over the ground does not tell which of them drifts"
         fix = f"where the yaw rate has a bias, {offset}"
     return [Finding("warning", what, where, why, fix)]
+
+
+def _is_steady(by: FloatArray, off: FloatArray) -> bool:
+    """Whether a difference (n,) grows with ``by`` in all parts of a run alike: noise that fades slowly adds up to a
+    walk at random, and nine in ten parts of one may look like a straight line."""
+    rows = np.linspace(0, len(off) - 1, PARTS + 1).astype(int)
+    by, off = np.diff(by[rows]), np.diff(off[rows])
+    size = float(by @ by)
+    if size == 0.0:
+        return False
+    slope = float(by @ off) / size
+    error = np.sqrt(float(np.sum((off - slope * by) ** 2)) / (PARTS - 1) / size)
+    return bool(abs(slope) > CERTAIN * error)
 
 
 def _line(by: FloatArray, off: FloatArray) -> tuple[float, float]:
@@ -172,11 +197,11 @@ def one_axis(trial: Trial, where: str, log_map: LogMap) -> list[Finding]:
         return []
     levers = [lever_of(trial, left, shifted) for shifted in (False, True)]
     best = min(levers, key=lambda one: one.left)
-    other = max(levers, key=lambda one: one.left)
+    other = max(one.left for one in levers)
     names = ("x", "y")
     large, small = (names[int(np.argmax(sizes))], names[int(np.argmin(sizes))])
     said = f"integrated velocities leave {large} by {max(sizes):.3g} m, {small} by {min(sizes):.3g} m"
-    if best.left < 1.0 - TELLS and (best.left < 0.5 * other.left or not best.shifted):
+    if best.left < 1.0 - TELLS and (best.left < 0.5 * other or not best.shifted) and _is_no_drift(trial, left, best):
         point = f'point = {{ x = "{best.ahead:.3g} m", y = "{best.across:.3g} m" }}'
         if best.shifted:
             what = "velocities seem to have been moved to midship along earth axes instead of the ship's"
@@ -220,18 +245,27 @@ def lever_of(trial: Trial, left: tuple[FloatArray, FloatArray], shifted: bool) -
     Velocities of a point ahead and abeam of midship leave the way of that point about midship.  Moved along earth axes,
     with r taken for the velocity along them, they leave besides what that way is on a ship that heads north.
     """
+    (ahead, abeam), rest = _fitted(_of_lever(trial, shifted), left)
+    return Lever(float(ahead), float(abeam), shifted, rest)
+
+
+def _of_lever(trial: Trial, shifted: bool) -> list[tuple[FloatArray, FloatArray]]:
+    """What a metre ahead and a metre abeam leave along x and along y, each (n_samples,)."""
     known = np.isfinite(trial.psi)
     psi = np.unwrap(np.interp(trial.t, trial.t[known], trial.psi[known]))
     c, s = np.cos(psi), np.sin(psi)
-    # Of a lever ahead, and of one abeam: along x and along y.
-    bases = [(-c, -s), (s, -c)]
-    if shifted:
-        bases = [(-c, psi - s), (s - psi, -c)]
+    return [(-c, psi - s), (s - psi, -c)] if shifted else [(-c, -s), (s, -c)]
+
+
+def _fitted(
+    bases: Sequence[tuple[FloatArray, FloatArray]], left: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, float]:
+    """Sizes (n_bases,) that explain what is left best, by least squares, and the share of its squares that stays."""
     stacked = np.column_stack([np.concatenate([a - a.mean(), b - b.mean()]) for a, b in bases])
     target = np.concatenate(left)
     fit, *_ = np.linalg.lstsq(stacked, target, rcond=None)
     rest = target - stacked @ fit
-    return Lever(float(fit[0]), float(fit[1]), shifted, float(rest @ rest) / max(float(target @ target), 1e-300))
+    return np.asarray(fit), float(rest @ rest) / max(float(target @ target), 1e-300)
 
 
 def shifted_lever(trial: Trial) -> Lever | None:
@@ -240,7 +274,17 @@ def shifted_lever(trial: Trial) -> Lever | None:
     if left is None:
         return None
     with_it, without = lever_of(trial, left, True), lever_of(trial, left, False)
-    return with_it if with_it.left < min(1.0 - TELLS, 0.5 * without.left) else None
+    shows = with_it.left < min(1.0 - TELLS, 0.5 * without.left) and _is_no_drift(trial, left, with_it)
+    return with_it if shows else None
+
+
+def _is_no_drift(trial: Trial, left: tuple[FloatArray, FloatArray], lever: Lever) -> bool:
+    """Whether a lever explains far more of what is left of positions than velocities that are off steadily, beside a
+    plain lever where it was moved along earth axes: in a steady turn that leaves a straight line too."""
+    t = trial.t - trial.t.mean()
+    still = np.zeros_like(t)
+    bases = [*(_of_lever(trial, False) if lever.shifted else ()), (t, still), (still, t)]
+    return lever.left < FAR_LESS * _fitted(bases, left)[1]
 
 
 def by_hand(trial: Trial, where: str, log_map: LogMap) -> list[Finding]:

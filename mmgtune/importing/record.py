@@ -157,7 +157,8 @@ def unit_of(name: str, table: Table, source: Source | TimeSource, target: str, v
             raise LogError(Problem(what, place, fix="name another column in the map"))
         return in_cells
     printed = next((one for one in (unit_in(header), table.below.get(name)) if one in known), None)
-    if stated and printed and printed not in (stated, source.header_says):
+    contradicted = stated and printed and known.get(stated) != known[printed]  # rps and 1/s are the same
+    if contradicted and printed != source.header_says:
         what = f"the map says '{header}' is in {stated}, its header says {printed}"
         fix = f'correct the map\'s unit or remove it; if the header is wrong, add header_says = "{printed}"'
         raise LogError(Problem(what, place, "one of them is wrong", fix))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mmgtune.importing import import_logs, parse_map
+from mmgtune.importing.doubts import gyro_drift
 from mmgtune.units import DEG
 
 from .made import MAP, logged, refusal, suzaku, turn, write_csv
@@ -47,6 +48,36 @@ def test_a_factor_on_the_yaw_rate_of_a_turn(tmp_path):
     trial = suzaku("turn_p35")
     fix = one_of(warned(tmp_path, logged(replace(trial, r=trial.r / 1.05))), "drift apart")
     assert float(fix.split("scale = ")[1].split(" ")[0]) == pytest.approx(1.05, abs=0.01)
+
+
+def fading(size, memory, n, seed):
+    """(n,) noise that fades slowly, of which one sample tells the next."""
+    rng, kept = np.random.default_rng(seed), np.exp(-1.0 / memory)
+    noise = [rng.normal(0.0, size)]
+    for _ in range(n - 1):
+        noise.append(kept * noise[-1] + rng.normal(0.0, size * np.sqrt(1.0 - kept**2)))
+    return np.array(noise)
+
+
+@pytest.mark.parametrize("turns", [1.0, 0.0])
+def test_noise_of_the_yaw_rate_that_fades_slowly_is_no_drift(turns):
+    """What it adds up to looked like a line in a fifth of all runs; of a ship that goes straight, like a factor of
+    0.016 on her yaw rate."""
+    trial = suzaku("zigzag_10")
+    psi, r = turns * trial.psi, turns * trial.r
+    runs = [replace(trial, psi=psi, r=r + fading(0.03 * DEG, 25.0, len(r), seed)) for seed in range(40)]
+    told = [one for run in runs for one in gyro_drift(run, "")]
+    assert len(told) <= 2
+    assert not [one for one in told if "scale" in one.fix]
+
+
+def test_velocities_off_steadily_in_a_turn_are_of_no_other_point(tmp_path):
+    """The way of a steady turn and a straight line are what velocities moved along earth axes leave too."""
+    trial = suzaku("turn_p35")
+    off = 0.03
+    u, v = trial.u + off * np.cos(trial.psi), trial.v_m - off * np.sin(trial.psi)
+    found = warned(tmp_path, logged(replace(trial, u=u, v_m=v)))
+    assert not [what for what in found if "velocities seem" in what]
 
 
 @pytest.mark.parametrize("name", ["turn_p35", "zigzag_10"])

@@ -89,6 +89,18 @@ def test_a_compass_that_would_count_counterclockwise_is_doubted(tmp_path: Path) 
     assert any("as no compass does: where 'Lon' is to the west" in note for note in proposal.notes)
 
 
+@pytest.mark.parametrize("below", ["1/s", "rps", "Hz"])
+def test_revolutions_in_a_second_whatever_they_are_called(tmp_path: Path, below: str) -> None:
+    """A map in rps was refused by the import of a log that says 1/s."""
+    columns = logged(turn())
+    columns["n"] = columns.pop("shaft") / 60.0
+    log = write_csv(tmp_path / "log.csv", columns)
+    head, _, rows = log.read_text().partition("\n")
+    log.write_text(f"{head}\ns,m,m,deg,kn,kn,deg/min,deg,{below}\n{rows}")
+    (found,) = import_logs([log], propose_map([log]).map(), ".", dry_run=True).trials
+    assert np.abs(found.n - 1.7).max() < 1e-6
+
+
 @pytest.mark.parametrize("below", [False, True])
 def test_a_shaft_in_radians_a_second(tmp_path: Path, below: bool) -> None:
     columns = logged(turn())

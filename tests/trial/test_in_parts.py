@@ -40,6 +40,18 @@ def test_so_is_a_speed_log(factor):
     assert [*changes_within(replace(TURN, u=TURN.u * later(TURN, factor)))] == ["u"]
 
 
+def test_noise_of_the_yaw_rate_that_fades_slowly_is_none():
+    """Its sums walk at random: one run in twelve was told to have a gyro that fails."""
+    rng, kept = np.random.default_rng(5), np.exp(-1.0 / 40.0)
+    told = []
+    for _ in range(60):
+        noise = np.zeros(ZIGZAG.n_samples)
+        for k, step in enumerate(rng.normal(0.0, 0.06 * DEG * np.sqrt(1.0 - kept**2), len(noise) - 1)):
+            noise[k + 1] = kept * noise[k] + step
+        told.append(bool(changes_within(replace(ZIGZAG, r=ZIGZAG.r + noise))))
+    assert sum(told) <= 2
+
+
 @pytest.mark.parametrize("trial", TRIALS.values(), ids=lambda one: one.id)
 def test_other_habits_are_none(trial):
     t, r = trial.t, trial.r

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ... import units
+from ...arrays import FloatArray
 from ...phrases import figures
 from ...trial.kinematics import FITS
 from ...units import DEG
@@ -20,6 +21,8 @@ from .words import LOG_SPEED, ORDER, OTHER, ROLL
 
 FACTOR = 0.03
 """Share by which a speed may be more or less than that of the positions throughout and still be surely what it is."""
+GOES_WITH = 0.6
+"""Correlation with the sway from which a column called so is that."""
 CLEAR = 0.15
 """Standard error of the share of what drift takes off a speed, from which that share tells which speed it is."""
 
@@ -114,8 +117,9 @@ def _both(find: Finder, key: tuple[Any, ...], scores: Mapping[tuple[Any, ...], f
 
 
 def _second_needed(find: Finder, axes: str, column: int, unit: str, minus: bool) -> bool:
-    """Whether a column explains the sway, or the way east, better than the yaw rate does."""
-    told, direct = [], []
+    """Whether a column explains the sway, or the way east, better than the yaw rate does; of one that is called so,
+    whether it goes with it, however noisy it is."""
+    told, direct, together = [], [], []
     for look in find.looks:
         target = look.abeam if axes == "ship" else look.east
         logged = look.mean(column) * units.factors("m/s")[unit]
@@ -127,12 +131,21 @@ def _second_needed(find: Finder, axes: str, column: int, unit: str, minus: bool)
             without = target[both] - lever * rate
             sign = -1.0 if minus else 1.0
             off = target[both] - sign * logged[both]
-            size = max(float(np.sqrt(np.mean(target[both] ** 2))), 1e-300)
+            size = _size(target[both])
             direct.append(float(np.sqrt(np.mean(off**2))) / size)
+            together.append(sign * float(target[both] @ logged[both]) / size / _size(logged[both]) / both.sum())
             off = off - float(rate @ off) / max(float(rate @ rate), 1e-300) * rate
             told.append(float(np.sqrt(np.mean(off**2)) / max(float(np.sqrt(np.mean(without**2))), 1e-300)))
+    if not told:
+        return False
     named = find.said[column] == "v"
-    return bool(told) and (float(np.median(told)) < (1.0 if named else 0.8) or float(np.median(direct)) < 0.35)
+    goes = float(np.median(told)) < (1.0 if named else 0.8) or float(np.median(direct)) < 0.35
+    return goes or (named and float(np.median(together)) > GOES_WITH)
+
+
+def _size(values: FloatArray) -> float:
+    """Root of the mean square."""
+    return max(float(np.sqrt(np.mean(values**2))), 1e-300)
 
 
 def ground_speed(find: Finder, among: Sequence[int]) -> None:

@@ -29,12 +29,16 @@ LEAST = 0.05
 SURE = 8.0
 """The same in standard errors."""
 
+SURE_IN_STEPS = 4.0
+"""The same by the strides themselves, not by their sums."""
+
 EXPLAINED = 0.6
 """Share that a change must take out of what is left by one factor, steady errors, those that grow evenly, and any other
 habit of a sensor."""
 
 PART, LASTS = 0.15, 0.5
-"""Share of the turning or way that each part has at least, and share of the change between any halves of the two."""
+"""Share of the turning or way that each part has at least, and share of the change between any halves of the two, and
+by the strides themselves."""
 
 FAR = 1e9
 """Way in a stride [m] that no ship makes: nothing can be told of such a log."""
@@ -183,9 +187,29 @@ def _change(
     error = np.sqrt(variance * (inverse[0, 0] + inverse[1, 1] - 2.0 * inverse[0, 1]))
     before, behind = factors.tolist()
     changed = abs(behind - before)
-    if changed < LEAST or changed < SURE * error or squares > (1.0 - EXPLAINED) * least or lasts.min() < LASTS:
+    in_steps, error_in_steps = _change_in_steps(a, b, others, stride < k)
+    alike = np.sign(behind - before) * in_steps >= max(LASTS * changed, SURE_IN_STEPS * error_in_steps)
+    sure = changed >= SURE * error and alike
+    if changed < LEAST or not sure or squares > (1.0 - EXPLAINED) * least or lasts.min() < LASTS:
         return None
     return Change(k, before, behind)
+
+
+def _change_in_steps(a: FloatArray, b: FloatArray, others: FloatArray, before: BoolArray) -> tuple[float, float]:
+    """A change of the factor and its standard error by strides themselves, of which one may tell the next: of noise
+    that fades slowly the sums, by which a change is looked for, walk at random.
+
+    before  (n_rows,) whether a stride is before the change
+    """
+    A = np.column_stack([np.where(before, a, 0.0), np.where(before, 0.0, a), others])
+    fit, _, rank, _ = np.linalg.lstsq(A, b, rcond=1e-8)
+    left = b - A @ fit
+    variance = float(np.sum(left**2)) / max(1, len(b) - rank)
+    alike = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
+    fades = (1.0 + alike) / (1.0 - alike) if alike > 0.0 else 1.0
+    inverse = np.linalg.pinv(A.T @ A, rcond=1e-12)
+    error = np.sqrt(fades * variance * (inverse[0, 0] + inverse[1, 1] - 2.0 * inverse[0, 1]))
+    return float(fit[1] - fit[0]), float(error)
 
 
 def _basis(columns: FloatArray) -> FloatArray:
