@@ -21,8 +21,9 @@ class GyroDrift(NamedTuple):
     settles: Lanes
 
 
-BARELY = 1e-6
-"""Share of the time in which a drift dies away up to which it is even."""
+SHORT = 0.03
+"""Share of the time in which a drift dies away up to which how much is left of it is a series: exactly all of it where
+it never does, and without a difference of two numbers that are nearly alike."""
 
 
 def gyro_drift(start: State, end: State, held: tuple[Lanes], h: Lanes, e: GyroDrift) -> tuple[State, tuple[Lanes]]:
@@ -34,8 +35,8 @@ def gyro_drift(start: State, end: State, held: tuple[Lanes], h: Lanes, e: GyroDr
     """
     t = held[0] + h
     past = t / np.maximum(e.settles, INSTANT)
-    even = past < BARELY
-    drifted = where(even, t, (1.0 - exp(-past)) / np.maximum(past, BARELY) * t)
+    series = 1.0 - past * (1.0 / 2.0 - past * (1.0 / 6.0 - past * (1.0 / 24.0 - past * (1.0 / 120.0 - past / 720.0))))
+    drifted = t * where(past < SHORT, series, (1.0 - exp(-past)) / np.maximum(past, SHORT))
     seen = heading_shown(end, e.heading * drifted, e.heading_alone * drifted)
     return State(x=seen.x, y=seen.y, psi=seen.psi, u=seen.u, v_m=seen.v_m, r=seen.r + e.yaw_rate * drifted), (t,)
 

@@ -7,9 +7,12 @@ import pytest
 
 from mmgtune import estimate, read_particulars
 from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.diagnose.answering.saying import _at_ends
 from mmgtune.diagnose.bench.beliefs import FURTHEST
 from mmgtune.diagnose.bench.workbench import Point, make_workbench
+from mmgtune.diagnose.causes.cause import Cause
 from mmgtune.diagnose.signatures.at_ends import BEYOND, AtEnds
+from mmgtune.diagnose.signatures.intervals import Estimate
 from mmgtune.effects import find_effect
 from mmgtune.trial import load_trials
 from tests.diagnose.beliefs import belief_with
@@ -107,3 +110,12 @@ def test_a_ship_unlike_the_formulas_of_her_profile_gets_no_false_cause():
     assert "of 31 coefficients that are re-tuned end beyond two standard deviations of ships" in result.sentence()
     assert document["unexplained"]["at_ends"]["targets"] == 31
     assert document["assumptions"][-2]["name"] == "31 targets from formulas"
+
+
+@pytest.mark.parametrize(("value", "told"), [(0.5, True), (0.6, False)])
+def test_a_size_at_the_end_of_what_was_looked_for_says_so(value, told):
+    """A rudder logged in per cent of 35 deg and read in degrees moved by 0.5 times its angle, and by 0.35 in truth."""
+    gain = Estimate("effects.rudder-gain.factor", value, 0.5, value + 0.014, 0.007, at_end=told)
+    cause = Cause("rudder-gain", find_effect("rudder-gain"), {gain.name: gain}, 0.0, None)
+    words = _at_ends(SimpleNamespace(causes=(cause,)))
+    assert ("rudder-gain is at the end of what was looked for" in words) == told

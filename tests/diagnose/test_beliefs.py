@@ -153,3 +153,20 @@ def test_an_interval_knows_that_a_target_at_its_bound_may_be_within_it(sailed):
             widths[z] = found.high - found.low
     assert widths[0.0] > 1.5 * widths[None]
     assert widths[0.0] <= 1.01 * widths[1e-9]  # as one inside, or less, as chi-squared grows inwards
+
+
+@pytest.mark.parametrize(
+    ("size", "form"), [("gyro-drift.heading", "gyro-drift.settles"), ("rudder-stall.angle", "rudder-stall.width")]
+)
+def test_an_interval_beside_a_form_at_its_end_is_as_wide_as_just_inside(sailed, size, form):
+    """A drift of 0.3955 +- 0.0001 deg/min was 0.4: the derivative looked at times to settle that are negative."""
+    profile, trials = sailed
+    names = (f"effects.{size}", f"effects.{form}")
+    bench = make_workbench(profile, trials[:1], DiagnoseOptions(effects=(size.partition(".")[0],)), [names[0]])
+    widths = []
+    for z in (0.0, 1e-3):
+        unit = np.array([bench.null(names)[0] - 0.2, z])
+        at = Point(names, unit, np.zeros((1, 6)), 0.0, bench.problem.integrator)
+        found = estimates(bench, at)[names[0]]
+        widths.append(found.high - found.low)
+    assert widths[0] == pytest.approx(widths[1], rel=0.2)

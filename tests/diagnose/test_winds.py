@@ -220,6 +220,17 @@ def test_a_form_at_the_end_of_its_range_is_told():
     assert not _deformed([Cause("wind", wind, inside, 0.0, None)])
 
 
+def test_a_stall_all_at_once_is_no_end_of_its_form():
+    """A sharp stall at 23.9 deg for 24 was told to be of no known form."""
+    stall = find_effect("rudder-stall")
+    sizes = {"angle": (0.417, 0.414, 0.420), "slope": (0.0, -0.04, 0.03), "width": (4e-4, 7e-8, 0.1)}
+    estimated = {
+        f"effects.rudder-stall.{name}": Estimate(name, *values, 0.1, at_end=name == "width")
+        for name, values in sizes.items()
+    }
+    assert not _deformed([Cause("rudder-stall", stall, estimated, 0.0, None)])
+
+
 def test_the_mean_force_of_waves_differs_from_run_to_run(sailed):
     """By groups: half as much in a run four times as long, and nothing where no such force acts."""
     _, (trial, *_) = sailed

@@ -129,6 +129,17 @@ def test_a_gyro_that_settles_comes_to_rest():
     np.testing.assert_allclose(even.psi, (fine.psi + 0.002 * t)[EVERY], atol=1e-7)
 
 
+@pytest.mark.parametrize("settles", [np.inf, 1e9, 1e5, 1e3])
+def test_how_soon_a_gyro_settles_shows_from_never_on(settles):
+    """By the reciprocal, which searches use: nothing showed of it until a millionth of it had passed."""
+    t, _, samples = way()
+    step = 1e-8
+    ends = [logged("gyro-drift", samples, heading_alone=1.0, settles=one) for one in (1.0 / (1.0 / settles + step), settles)]
+    t, past = t[EVERY], t[EVERY] / settles
+    expected = -(t**2) / 2.0 * (1.0 - 2.0 * past / 3.0 + past**2 / 4.0)
+    np.testing.assert_allclose((ends[0].psi - ends[1].psi) / step, expected, atol=1e-3 * np.abs(expected).max())
+
+
 @pytest.mark.parametrize("effect", [e for e in effects() if isinstance(e, FilterEffect)], ids=lambda e: e.tag)
 def test_what_is_logged_of_a_steady_motion_leads_back(effect):
     """And goes on as it began: a steady turn by small steps leaves the instrument where ``settled`` puts it."""

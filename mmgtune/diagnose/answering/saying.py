@@ -107,7 +107,7 @@ def _of_causes(answer: Answer) -> str:
             f"{named} With that put right no other cause shows: the error of the re-tuned model falls from "
             f"{figures(before, digits)} to {figures(after, digits)} times the noise of the measurements."
         )
-    named = _joined(named, clock_rate(answer.causes))
+    named = _joined(named, clock_rate(answer.causes), _at_ends(answer))
     gained = _joined(named, *_brought(answer))
     if answer.gain.form_is_off:
         gained = (
@@ -125,6 +125,12 @@ def _of_causes(answer: Answer) -> str:
         f"{gained} What differs between runs was estimated there from the first {100.0 * answer.gain.first_part:.0f} "
         "% of each run, and the rest was judged; the extended profile leaves it out."
     )
+
+
+def _at_ends(answer: Answer) -> str:
+    """That a size is no more than the end of what was looked for; "" where none is."""
+    ended = listed(list(dict.fromkeys(cause.tag for cause in answer.causes if cause.at_ends)))
+    return f"The size of {ended} is at the end of what was looked for, and may lie beyond it." if ended else ""
 
 
 def _brought(answer: Answer) -> list[str]:

@@ -10,10 +10,10 @@ from typing import Any
 
 from ...displayed import Brief
 from ...documents import finite
-from ...effects import Effect, SensorEffect
+from ...effects import Effect, Parameter, SensorEffect
 from ...phrases import small
 from ..bench.runs import IN_WORDS
-from ..signatures.intervals import Estimate
+from ..signatures.intervals import AT_END, Estimate
 from ..signatures.wording import parameters_in_words
 from .by_run import ByRun
 from .contributions import Contribution
@@ -110,13 +110,14 @@ class Cause:
 
     @property
     def form_at_end(self) -> list[str]:
-        """Parts of its form that are at the end of their range, in words."""
+        """Parts of its form that are at the end of their range, in words: but those there that have no such part, as a
+        rudder that stalls all at once."""
         if self.effect is None:
             return []
-        ended = {full.rpartition(".")[2]: one.value for full, one in self.estimates.items() if one.at_end}
+        ended = {full.rpartition(".")[2]: one for full, one in self.estimates.items() if one.at_end}
         fields = self.effect.parameters
-        told = [name for name in self.effect.form if name in ended and ended[name] != fields[name].null]
-        return [f"{fields[name].label}, {ended[name]:.3g}" for name in told]
+        told = [name for name in self.effect.form if name in ended and not _is_plain(fields[name], ended[name])]
+        return [f"{fields[name].label}, {ended[name].value:.3g}" for name in told]
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; values in the unit named, interval ends null where infinite."""
@@ -257,3 +258,11 @@ class Detectability(Brief):
             "units": self.units,
             "twins": [{"effect": tag, "angle_deg": angle} for tag, angle in self.twins],
         }
+
+
+def _is_plain(parameter: Parameter, ended: Estimate) -> bool:
+    """Whether a part of a form ended where the formula has it, or where it is left out."""
+    if ended.value == parameter.null:
+        return True
+    width = math.inf if ended.low is None or ended.high is None else ended.high - ended.low
+    return math.isfinite(width) and abs(ended.value - float(parameter.default or 0.0)) <= AT_END * width

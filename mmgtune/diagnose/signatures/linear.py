@@ -263,18 +263,18 @@ class Steps:
     ends: IntArray
 
     @classmethod
-    def about(cls, at: FloatArray, n_free: int, size: FloatArray, inward: FloatArray) -> Steps:
+    def about(cls, at: FloatArray, n_free: int, size: FloatArray, inward: FloatArray, within: BoolArray) -> Steps:
         """Of places ``at`` (n_names,), the first ``n_free`` of which are free, the others at their null.
 
         size    (n_absent,) typical sizes in the unit cube; inward: as ``inwards`` has it
+        within  (n_names,) of which there may be nothing beyond the bounds, such as a negative time constant
         """
         ends = np.flatnonzero(inward)
         moved = np.concatenate([np.arange(len(at)), n_free + ends, n_free + ends])
         plus = np.concatenate([np.full(n_free, STEP), size, SMALL * size[ends], TINY * size[ends]])
         minus = plus.copy()
-        beyond = moved >= n_free  # derivatives may look over a bound, sizes of effects may not
-        plus[beyond & (at[moved] + plus > 1.0)] = 0.0
-        minus[beyond & (at[moved] - minus < 0.0)] = 0.0
+        plus[within[moved] & (at[moved] + plus > 1.0)] = 0.0
+        minus[within[moved] & (at[moved] - minus < 0.0)] = 0.0
         taken = np.concatenate([plus, minus]) > 0.0
         return cls(moved, plus, minus, np.where(taken, np.cumsum(taken), 0), ends)
 
@@ -326,7 +326,8 @@ def linearise(
     null = bench.null(wanted)
     at = np.concatenate([point.unit, null])
     n_free = len(point.names)
-    steps = Steps.about(at, n_free, np.array([typical(bench, name) for name in wanted]), inwards(null))
+    within = np.array([parameter_of(bench.model, name) is not None for name in names], dtype=bool)
+    steps = Steps.about(at, n_free, np.array([typical(bench, name) for name in wanted]), inwards(null), within)
     runs = problem.residuals(steps.columns(at)).T
     if problem is not own and not np.isfinite(runs[:, 0]).all():  # the other method diverges here
         problem = own
