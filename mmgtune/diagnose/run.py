@@ -30,7 +30,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, another_ship, check_trials
 from ..trial.checks.control_checks import RUDDER_SIGN
 from ..trial.checks.finding import Finding
-from ..trial.checks.motion_checks import CONTRADICTED
+from ..trial.checks.motion_checks import CONTRADICTED, YAW_SIGN
 from ..trial.checks.set_checks import found_in, told_of
 from ..trial.checks.swell import period_of, swings
 from ..trial.schema import MOTION
@@ -346,10 +346,11 @@ def _contradicted(trials: Mapping[str, Trial], checked: Checked) -> str:
             f"{first} {of} the ship turns away from her rudder, so the sign of its angle is wrong, or those of heading "
             "and yaw rate."
         )
-    apart = found_in(checked, CONTRADICTED)
-    if of := _most(len(apart), trials):
-        one = next(iter(apart.values()))
-        return f"{first} {of} {one.what}, whatever the model: {one.why}."
+    for code in (YAW_SIGN, CONTRADICTED):
+        apart = found_in(checked, code)
+        if of := _most(len(apart), trials):
+            one = next(iter(apart.values()))
+            return f"{first} {of} {one.what}, whatever the model: {one.why}."
     return ""
 
 

@@ -12,10 +12,10 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from ..arrays import FloatArray
-from ..phrases import aboard
+from ..phrases import aboard, listed
 from ..physics.frame import to_earth
 from ..trial import Trial
-from ..trial.checks.finding import Finding, Rescale, Shift
+from ..trial.checks.finding import Finding, Rescale, Reverse, Shift
 from ..trial.kinematics import turning, white_noise
 from ..units import DEG
 from .cutting import standing
@@ -106,6 +106,8 @@ def gyro_drift(trial: Trial, where: str) -> list[Finding]:
     t = np.linspace(0.0, trial.duration, len(off))
     (slope, in_time), (factor, by_turning) = (_line(one, off) for one in (t, turned.yaw))
     drift = slope * trial.duration
+    if turned.opposed:  # which the check of the trial tells
+        return []
     if max(in_time, by_turning) < STEADY or max(abs(drift), float(np.ptp(off))) < DRIFTS:
         return []
     for ratio, name, why in OTHER_UNITS:
@@ -327,6 +329,9 @@ def fix_in_map(fix: str) -> str:
     """A fix by arithmetic as the key of the map to change; any other as it is."""
     if isinstance(fix, Shift):
         return f'say late = "{fix.late:.2g} s" in [columns] of the map, for the rudder and all that was logged with it'
+    if isinstance(fix, Reverse):
+        first, *others = (f"[columns.{name}]" for name in fix.columns)
+        return f'say the other side with positive = "..." in {first} of the map; if it is right, in {listed(others)}'
     if not isinstance(fix, Rescale):
         return fix
     place = "format, unit or scale in [time]" if fix.column == "t" else f"unit or scale in [columns.{fix.column}]"

@@ -53,6 +53,10 @@ FITS = 0.1
 """Share of the distance run by which velocities may miss the positions."""
 
 
+OPPOSED, AS_FAR = 0.9, 1.5
+"""Correlation of two records of a turn from which they go opposite ways, and times as far as the other one may go."""
+
+
 @dataclass(frozen=True)
 class Turning:
     """Turned angle since the first sample, once from the heading and once from the yaw rate, (n_intervals + 1,).
@@ -84,6 +88,11 @@ class Turning:
         if np.std(self.heading) == 0.0 or np.std(self.yaw) == 0.0:
             return 0.0
         return float(np.corrcoef(self.heading, self.yaw)[0, 1])
+
+    @property
+    def opposed(self) -> bool:
+        """Whether the yaw rate turns as far as the heading, the other way."""
+        return self.span > 0.3 and self.correlation < -OPPOSED and 1.0 / AS_FAR < self.ratio < AS_FAR
 
     def in_degrees(self) -> str:
         """The column in degrees, "psi" or "r", where reading it so makes the two agree; else ""."""

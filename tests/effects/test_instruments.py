@@ -134,7 +134,9 @@ def test_how_soon_a_gyro_settles_shows_from_never_on(settles):
     """By the reciprocal, which searches use: nothing showed of it until a millionth of it had passed."""
     t, _, samples = way()
     step = 1e-8
-    ends = [logged("gyro-drift", samples, heading_alone=1.0, settles=one) for one in (1.0 / (1.0 / settles + step), settles)]
+    ends = [
+        logged("gyro-drift", samples, heading_alone=1.0, settles=one) for one in (1.0 / (1.0 / settles + step), settles)
+    ]
     t, past = t[EVERY], t[EVERY] / settles
     expected = -(t**2) / 2.0 * (1.0 - 2.0 * past / 3.0 + past**2 / 4.0)
     np.testing.assert_allclose((ends[0].psi - ends[1].psi) / step, expected, atol=1e-3 * np.abs(expected).max())

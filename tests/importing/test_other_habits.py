@@ -89,6 +89,17 @@ def test_a_compass_that_would_count_counterclockwise_is_doubted(tmp_path: Path) 
     assert any("as no compass does: where 'Lon' is to the west" in note for note in proposal.notes)
 
 
+@pytest.mark.parametrize("exchanged", [True, False])
+def test_positions_whose_names_are_exchanged_are_doubted(tmp_path: Path, exchanged: bool) -> None:
+    """With x and y as their names say the compass counted counterclockwise from east, which was "sure"."""
+    columns = logged(turn())
+    north, east = columns.pop("north"), columns.pop("east")
+    columns |= {"X nord (m)": east if exchanged else north, "Y est (m)": north if exchanged else east}
+    proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert proposal.guesses["psi"].confidence == ("likely" if exchanged else "sure")
+    assert any("exchange the columns of x and y" in note for note in proposal.notes) == exchanged
+
+
 @pytest.mark.parametrize("below", ["1/s", "rps", "Hz"])
 def test_revolutions_in_a_second_whatever_they_are_called(tmp_path: Path, below: str) -> None:
     """A map in rps was refused by the import of a log that says 1/s."""

@@ -80,7 +80,7 @@ def turning(side=1.0):
     ("changes", "word"),
     [
         (lambda trial: {"psi": (trial.psi + np.pi) % (2 * np.pi)}, "jumps by a full turn"),
-        (lambda trial: {"r": -trial.r}, "does not integrate to the heading"),
+        (lambda trial: {"r": -trial.r}, "turn opposite ways"),
         (lambda trial: {"delta": -trial.delta}, "turns away from its rudder"),
         (lambda trial: {"u": np.gradient(trial.x), "v_m": np.gradient(trial.y)}, "fit if read in earth axes"),
         (lambda trial: {"u": 2 * trial.u}, "do not integrate to the positions"),

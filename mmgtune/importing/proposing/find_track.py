@@ -156,7 +156,7 @@ def _confidence(find: Finder, scores: Mapping[Track, float], track: Track, cours
     """How sure a reading is, by what speaks for those of other columns; that of the course itself is no other."""
     others = [one for one in scores if (one.x, one.y, one.psi) != (track.x, track.y, track.psi) and one.psi != course]
     rival = max((scores[one] for one in others), default=0.0)
-    clear = scores[track] > 1.1 * rival and not (track.geographic and track.left)
+    clear = scores[track] > 1.1 * rival and not (track.geographic and track.left) and not _as_exchanged(find, track)
     return SURE if clear and scores[track] > 0.45 * len(find.looks) else LIKELY
 
 
@@ -226,6 +226,13 @@ def _doubt_mirror_image(find: Finder, scores: Mapping[Track, float], track: Trac
             f'it positive = "west", {psi} positive = "clockwise", and exchange port and starboard under r, v and the '
             "rudder"
         )
+    elif _as_exchanged(find, track):
+        x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
+        find.notes.append(
+            f"{psi} counts counterclockwise from east if {x} is to the north, as no compass does: where {x} is to the "
+            f"east and {y} to the north, exchange the columns of x and y, give {psi} positive = \"clockwise\" and no "
+            "zero, and exchange port and starboard under v, r and the rudder"
+        )
     elif _as_robots_have_them(find, track):
         x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
         find.notes.append(
@@ -242,6 +249,14 @@ def _as_robots_have_them(find: Finder, track: Track) -> bool:
     x, y, psi = (_DIVIDER.split(bare(find.first.names[k]).lower())[-1] for k in (track.x, track.y, track.psi))
     plain = not (track.geographic or track.south or track.west or track.left or track.east)
     return plain and (x, y) == ("x", "y") and psi in _ANGLES_OF_ROBOTS
+
+
+def _as_exchanged(find: Finder, track: Track) -> bool:
+    """Whether a heading counts as none does by a compass with x and y where their names have them, and as all do with
+    the two exchanged."""
+    named = [find.said[k] for k in (track.x, track.y, track.psi)] == ["x", "y", "psi"]
+    plain = not (track.geographic or track.south or track.west)
+    return named and plain and track.left and track.east
 
 
 def _against_its_name(find: Finder, track: Track) -> bool:

@@ -9,9 +9,10 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...inputs import INPUTS, Role
 from ...units import DEG
+from ..kinematics import turning
 from ..model import Trial
 from ..schema import MAIN_INPUTS, RUDDERS, directions
-from .finding import Finding, Rescale
+from .finding import Finding, Rescale, Reverse
 from .motion_checks import spikes_of
 
 BRAKING = 45.0 * DEG
@@ -77,8 +78,12 @@ def _gaps(name: str, values: FloatArray, where: str) -> Finding | None:
 
 
 def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
-    """A ship going ahead turns towards its rudder; only an overshoot goes the other way, and that one slows down."""
+    """A ship going ahead turns towards its rudder; only an overshoot goes the other way, and that one slows down.
+
+    Nothing where yaw rate and heading contradict each other: one of these is wrong."""
     delta = trial.columns[name]
+    if turning(trial.columns).opposed:
+        return None
     over = (np.abs(delta) > 3.0 * DEG) & np.isfinite(trial.r) & (trial.u > 0.0) & (trial.n > 0.0) & steered(trial)
     if over.sum() < 20:
         return None
@@ -93,7 +98,7 @@ def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
         "the ship turns away from its rudder",
         where,
         f"a positive angle must turn the ship to starboard; agreement of sides {towards:.2f}, expected near 1",
-        f"change the sign of '{name}'; if it is right, those of 'r', 'psi', 'v' and 'y'",
+        Reverse(name, "r", "psi", "v", "y"),
         RUDDER_SIGN,
     )
 

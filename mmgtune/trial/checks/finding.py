@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Self
 
+from ...phrases import listed
+
 SEVERITIES = ("error", "warning", "note")
 """Worst first."""
 
@@ -17,6 +19,21 @@ class Rescale(str):
     def __new__(cls, words: str, column: str = "") -> Self:
         made = super().__new__(cls, words)
         made.column = column
+        return made
+
+
+class Reverse(str):
+    """A fix by the other sign of a column, which a map of the log can say instead.
+
+    columns  the likeliest, then those that are wrong where that is right
+    """
+
+    columns: tuple[str, ...]
+
+    def __new__(cls, column: str, *others: str) -> Self:
+        those = f"{'that' if len(others) == 1 else 'those'} of {listed([repr(one) for one in others])}"
+        made = super().__new__(cls, f"change the sign of '{column}'; if it is right, {those}")
+        made.columns = (column, *others)
         return made
 
 

@@ -13,7 +13,7 @@ from ..headings import full_turns
 from ..kinematics import FITS, Reading, lever_of, position_misfits, stretch_of, turning
 from ..model import Trial
 from ..schema import LARGEST_YAW_RATE, MOTION
-from .finding import Finding
+from .finding import Finding, Reverse
 
 REPEATED = 0.05
 """Share of samples that repeat the one before, and that do not, from which a channel is taken for one of few digits."""
@@ -37,6 +37,9 @@ MENDED = {
     Reading.TWICE: "multiply 'psi' by 180/pi: it is in radians then",
 }
 """What makes of a reading that fits the one that is asked for."""
+
+YAW_SIGN = "yaw-sign"
+"""Code of a finding that yaw rate and heading turn opposite ways."""
 
 CONTRADICTED = "contradicted"
 """Code of a finding that positions and velocities contradict each other."""
@@ -209,6 +212,10 @@ def _quantum(known: FloatArray) -> float:
 def _yaw(trial: Trial, where: str) -> list[Finding]:
     turned = turning(trial.columns)
     place = f"{where}, columns 'psi' and 'r'"
+    if turned.opposed:
+        why = f"she turns {turned.ratio:.3g} times as far by her heading, to the other side"
+        fix = Reverse("r", "psi")
+        return [Finding("warning", "yaw rate and heading turn opposite ways", place, why, fix, YAW_SIGN)]
     if turned.span > 0.3 and turned.miss > 0.1 * turned.span + 0.1:
         return [
             Finding(
