@@ -230,7 +230,7 @@ def _doubt_mirror_image(find: Finder, scores: Mapping[Track, float], track: Trac
         x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
         find.notes.append(
             f"{psi} counts counterclockwise from east if {x} is to the north, as no compass does: where {x} is to the "
-            f"east and {y} to the north, exchange the columns of x and y, give {psi} positive = \"clockwise\" and no "
+            f'east and {y} to the north, exchange the columns of x and y, give {psi} positive = "clockwise" and no '
             "zero, and exchange port and starboard under v, r and the rudder"
         )
     elif _as_robots_have_them(find, track):
