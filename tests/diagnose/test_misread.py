@@ -84,8 +84,9 @@ def test_another_scale_from_run_to_run_is_told():
         lambda k, name, values: values + (k == 2) * 30.0 * NOISE[STATES.index(name)],  # all else says the same
         lambda k, name, values: values + (name == "u") * slowly(len(values), k),  # of a sensor, in all runs
         lambda k, name, values: np.full_like(values, np.nan) if name == "v_m" else values,
+        lambda k, name, values: values + 0.1 if name == "v_m" else values,  # a log with a zero error, in all runs
     ],
-    ids=["nothing", "white noise", "a little", "a scale", "all channels", "slow noise", "not measured"],
+    ids=["nothing", "white noise", "a little", "a scale", "all channels", "slow noise", "not measured", "a zero"],
 )
 def test_noise_and_what_moves_the_ship_are_no_misread_logs(change):
     assert misread_in(*seen(change)) == {}

@@ -25,6 +25,9 @@ run, and in the channel in most runs, for its log to be wrong."""
 BY_FACTOR = 0.5
 """Share of that error which the run's own factor leaves at most where the log is off by that."""
 
+MOST_RUNS = 0.7
+"""Share of the runs of which one zero error must leave that little to be one of the sensor."""
+
 STANDS = 0.1
 """Factor below which a log stands still, and tells nothing of the beginning."""
 
@@ -53,10 +56,13 @@ def misread_in(trials: Sequence[Trial], residuals: Sequence[FloatArray], level: 
         shown = [_by_factor(trial.motion[:, k], values[:, k]) for trial, values in zip(trials, residuals, strict=True)]
         known = [factor for factor, _ in shown if factor is not None]
         usual, most = float(np.median(known)) if known else 1.0, float(np.median(left[:, k]))
-        for trial, (factor, motion), values in zip(trials, shown, left, strict=True):
+        by_zero = _by_one_zero(trials, [motion for _, motion in shown], k, level[k])
+        less = float(np.mean(by_zero < BY_FACTOR * left[:, k]))
+        of_sensor = by_zero if less > MOST_RUNS else np.full(len(trials), np.inf)
+        for trial, (factor, motion), values, alike in zip(trials, shown, left, of_sensor, strict=True):
             least = FAR * max(1.0, float(np.delete(values, k).max()))
             # What is the same in all runs is an error of the sensor, and may be a cause.
-            own = min(values[k], _slow(trial.motion[:, k] - usual * motion, level[k]))
+            own = min(values[k], alike, _slow(trial.motion[:, k] - usual * motion, level[k]))
             if factor is None or own <= least:
                 continue
             scaled = _slow(trial.motion[:, k] - factor * motion, level[k]) < BY_FACTOR * own
@@ -126,6 +132,14 @@ def slow(values: FloatArray, level: FloatArray) -> FloatArray:
 def _slow(values: FloatArray, level: float) -> float:
     """Likewise of one channel (n_samples,)."""
     return float(slow(values[:, None], np.array([level]))[0])
+
+
+def _by_one_zero(trials: Sequence[Trial], motions: Sequence[FloatArray], k: int, level: float) -> FloatArray:
+    """(n_runs,) what is left in channel k of each run with one zero error for all, as ``slow`` has it."""
+    off = [trial.motion[:, k] - motion for trial, motion in zip(trials, motions, strict=True)]
+    zeros = [float(np.mean(one[np.isfinite(one)])) for one in off if np.isfinite(one).any()]
+    zero = float(np.median(zeros)) if zeros else 0.0
+    return np.array([_slow(one - zero, level) for one in off])
 
 
 def _by_factor(measured: FloatArray, off: FloatArray) -> tuple[float | None, FloatArray]:
