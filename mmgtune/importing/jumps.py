@@ -14,14 +14,18 @@ from .record import Record, Series
 LONG = 1000.0
 """Steps without a row beyond which what follows is another record: a hole that no trial goes across."""
 
+SILENT = 100
+"""Such steps where what was logged before or behind lasted no longer: runs in one file, with a quarter of an hour
+between them."""
+
 
 def cut_at_jumps(record: Record, log_map: LogMap, step: float | None) -> list[Record]:
     """A record in parts between the jumps of its time, in their order; as it is where it has none.
 
     step  of the trials [s], None for the map's or the record's own
 
-    A jump is a hole in all series at once that is longer than LONG steps, and than the map bridges.  Raises LogError
-    where there are more than the program goes through.
+    A jump is a hole in all series at once that is longer than LONG steps, and than the map bridges, or than SILENT steps
+    and than what was logged before it or behind it.  Raises LogError where there are more than the program goes through.
     """
     times = [one.t for one in record.series.values()]
     lead = record.series.get("latitude", record.series.get("x"))
@@ -30,7 +34,12 @@ def cut_at_jumps(record: Record, log_map: LogMap, step: float | None) -> list[Re
     own = float(np.median(np.diff(lead.t)))
     t = np.unique(np.concatenate(times))
     apart = np.diff(t)
-    before = np.flatnonzero(apart > max(LONG, log_map.gap) * max(own, step or log_map.step or own))
+    own = max(own, step or log_map.step or own)
+    before = np.flatnonzero(apart > max(SILENT, log_map.gap) * own)
+    ends = np.concatenate([[-1], before, [len(t) - 1]])
+    lasted = t[ends[1:]] - t[ends[:-1] + 1]
+    shorter = np.minimum(lasted[:-1], lasted[1:])
+    before = before[apart[before] > np.minimum(max(LONG, log_map.gap) * own, shorter)]
     if not len(before):
         return [record]
     LOG_PARTS.require(len(before) + 1, str(record.path), LogError, f"time jumps forward {len(before)} times")

@@ -44,6 +44,15 @@ def test_a_clock_that_jumps_forward_cuts_the_record(log, columns, jump):
     assert any("the record is cut there" in note for note in result.to_dict()["trials"][0]["notes"])
 
 
+@pytest.mark.parametrize(("silent", "runs"), [(900, 2), (90, 1)])
+def test_runs_in_one_file_are_runs_of_their_own(log, columns, silent, runs):
+    """A quarter of an hour between two runs of a few minutes was a hole in one run: nothing was held out."""
+    columns["time"][250:] += silent
+    result = import_logs([write_csv(log, columns)], parse_map(MAP), log.parent / "out")
+    assert [trial.n_samples for trial in result.trials] == [250, 150]
+    assert len({trial.run for trial in result.trials}) == runs
+
+
 def test_a_jump_where_controls_are_constants_cuts_too(log, columns):
     columns["time"][250:] += 1e9
     text = MAP.replace('{ column = "shaft", unit = "rpm" }', '{ value = "102 rpm" }')
