@@ -170,9 +170,9 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         by_chance = "" if row.p_value is None else f"{row.p_value:.2g}"
         rows.append((row.label, f"{row.score:.4g}", gain, by_chance, J))
     head, *rest = c.table(("hypothesis", "score", "gain", "by chance", "J test"), rows, spare=(1,))
-    lines = [head, "", *rest]
+    lines = [head, "", *rest, ""] if rows else []
     before, after = result.gain.J
-    lines += ["", f"verdict: {result.verdict}", result.sentence()]
+    lines += [f"verdict: {result.verdict}", result.sentence()]
     if result.record:
         lines.append(result.record.sentence)
     lines += [trace.told("another" if k else "one more") for k, trace in enumerate(result.traces)]

@@ -213,8 +213,9 @@ def _looked_at(
     trials, ended = within_range(trials, whole)
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
-    known = known_causes(profile, seen, options)
-    in_place = known_causes(profile, seen, options, in_place=True) if choice is None else []
+    reversed_sign = _contradicted(whole, checked, SIGNS) if choice is None else ""
+    known = known_causes(profile, seen, options) if not reversed_sign else []
+    in_place = known_causes(profile, seen, options, in_place=True) if choice is None and not reversed_sign else []
     names = [name for h in (*known, *in_place) for name in h.names]
     options = with_hull_held(options) if choice else options
     bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
@@ -337,20 +338,21 @@ def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
     return [name for name in LEG_NAMES if name in there and name not in names]
 
 
-def _contradicted(trials: Mapping[str, Trial], checked: Checked) -> str:
+SIGNS = (RUDDER_SIGN, YAW_SIGN)
+"""Codes of findings of which no cause is the reason: where most trials have them none is looked for."""
+
+
+def _contradicted(trials: Mapping[str, Trial], checked: Checked, codes: Sequence[str] = (*SIGNS, CONTRADICTED)) -> str:
     """What the logs of most trials say against each other, which is to be put right before a cause is looked for; by
-    what ``check_trials`` found in them."""
-    first = "First put the logs right: in"
-    if of := _most(len(found_in(checked, RUDDER_SIGN)), trials):
-        return (
-            f"{first} {of} the ship turns away from her rudder, so the sign of its angle is wrong, or those of heading "
-            "and yaw rate."
-        )
-    for code in (YAW_SIGN, CONTRADICTED):
+    what ``check_trials`` found in them, of some codes."""
+    for code in codes:
         apart = found_in(checked, code)
         if of := _most(len(apart), trials):
             one = next(iter(apart.values()))
-            return f"{first} {of} {one.what}, whatever the model: {one.why}."
+            said = f"{one.what}, whatever the model: {one.why}"
+            if code == RUDDER_SIGN:
+                said = f"{one.what}: the sign of its angle is wrong, or those of heading and yaw rate"
+            return f"First put the logs right: in {of} {said}."
     return ""
 
 

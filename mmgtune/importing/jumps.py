@@ -24,8 +24,9 @@ def cut_at_jumps(record: Record, log_map: LogMap, step: float | None) -> list[Re
 
     step  of the trials [s], None for the map's or the record's own
 
-    A jump is a hole in all series at once that is longer than LONG steps, and than the map bridges, or than SILENT steps
-    and than what was logged before it or behind it.  Raises LogError where there are more than the program goes through.
+    A jump is a hole in all series at once that is longer than LONG steps, and than the map bridges, or than SILENT
+    steps and than what was logged before it or behind it.  Raises LogError where there are more than the program goes
+    through.
     """
     times = [one.t for one in record.series.values()]
     lead = record.series.get("latitude", record.series.get("x"))

@@ -90,6 +90,8 @@ def test_a_rudder_of_the_wrong_sign_is_told_first():
     result = diagnose("suzaku", replace(trials, trials=wrong, tune=tuple(wrong), test=()), asked)
     assert result.verdict == "unexplained"
     assert result.sentence().startswith("First put the logs right: in 3 of 3 trials the ship turns away from")
+    assert "No cause was looked for" in result.sentence()
+    assert (result.candidates, result.record) == ((), None)  # three minutes of search told no more
 
 
 @pytest.mark.parametrize("by_noise", [False, True])
@@ -101,7 +103,8 @@ def test_positions_stretched_along_one_axis_are_told_first(by_noise, monkeypatch
     motions = simulate_trials(profile, sailed, integrator=Integrator("rk4"))
     made = {id: logged(trial, motion, rng) for id, trial, motion in zip(ids, sailed, motions, strict=True)}
     if by_noise:  # what is left is thought to be noise, whatever the logs say
-        monkeypatch.setattr(import_module("mmgtune.diagnose.run"), "_contradicted", lambda *_: "Logs differ.")
+        module = import_module("mmgtune.diagnose.run")
+        monkeypatch.setattr(module, "_contradicted", lambda _, __, signs=(): "" if signs else "Logs differ.")
     else:
         made = {id: replace(one, y=1.2 * one.y) for id, one in made.items()}
     asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)

@@ -96,8 +96,10 @@ class Answer(Belief, Plotted):
 
     @property
     def record(self) -> Record | None:
-        """How often such an answer was right in the study; None of a search that was stopped, and of voyages."""
-        return record_of(self.kind) if self.kind and not self.between else None
+        """How often such an answer was right in the study; None of a search that was stopped, of voyages, and where
+        logs are to be put right before anything is looked for."""
+        looked = not (self.contradicted and not self.candidates)
+        return record_of(self.kind) if self.kind and looked and not self.between else None
 
     @property
     def between(self) -> tuple[Difference, ...]:

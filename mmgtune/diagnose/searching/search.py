@@ -94,7 +94,7 @@ def search(
     left = list(hypotheses)
     dropped: list[Hypothesis] = []
     once: list[Hypothesis] = []
-    while not bench.stop():
+    while hypotheses and not bench.stop():
         found.more = found.n_terms >= TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
         if found.more:
             break
