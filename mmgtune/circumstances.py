@@ -11,10 +11,11 @@ from .components.propeller import ASTERN
 from .effects import Effect
 from .inputs import INPUTS
 from .model import Model
-from .phrases import listed
+from .phrases import figures, listed
 from .physics.quantities import HELD, KNOWN, Surroundings
 from .profile import ShipProfile
 from .trial import Trial, measured_around, surroundings
+from .trial.checks.cross_checks import way_per_turn
 
 WORDS = {
     "wind": ("wind", "still air"),
@@ -27,6 +28,10 @@ WORDS = {
 OFTEN = 0.02
 """Share of the samples of a trial with revolutions astern from which it is one with a reversed propeller."""
 
+AS_FAR = (0.15, 4.0)
+"""Times as far as by the approach of her profile that a ship may go with each turn of the propeller: revolutions are
+looked for from 0.2 to 3 times those logged."""
+
 _FIELDS = Surroundings._fields
 
 
@@ -38,12 +43,29 @@ def notes_on(
     values  of coefficients in place of the model's own
     free    names of coefficients that are tuned: they count as acting
     """
-    reversed_in = reversals(model, trials)
+    at_odds = [*another_size(model.profile, trials), *reversals(model, trials)]
     around: dict[str, list[FloatArray]] = {}
     if acts_on_surroundings(model):
         for trial in trials:
             around.setdefault(trial.whole, []).append(surroundings(trial, model.draught))
-    return reversed_in + notes(model, {name: np.concatenate(parts) for name, parts in around.items()}, values, free)
+    return at_odds + notes(model, {name: np.concatenate(parts) for name, parts in around.items()}, values, free)
+
+
+def another_size(profile: ShipProfile, trials: Sequence[Trial]) -> list[str]:
+    """A sentence where a ship makes a way with each turn of her propeller that no gear, speed or wind lets that of a
+    profile make; else none."""
+    found = [way for trial in trials if (way := way_per_turn(trial)) is not None]
+    approach = profile.approach
+    if approach is None or not found or min(approach.speed, approach.n) <= 0.0:
+        return []
+    way, own = float(np.median(found)), approach.speed / approach.n
+    if AS_FAR[0] * own <= way <= AS_FAR[1] * own:
+        return []
+    told = (
+        f"the ship makes {figures(way, 3)} m with each turn of the propeller, and {figures(own, 3)} m by the approach "
+        f"of '{profile.id}': the trials are of a ship of another size, or speeds or revolutions are in other units"
+    )
+    return [told]
 
 
 def reversals(model: Model, trials: Sequence[Trial]) -> list[str]:

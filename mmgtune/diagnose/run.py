@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import ShipGiven, TrialsGiven, ship_of
-from ..circumstances import reversals, reversed_in
+from ..circumstances import another_size, reversals, reversed_in
 from ..errors import ProfileError, must_be_a
 from ..files import kept_in
 from ..fitting.extending import with_width
@@ -213,9 +213,9 @@ def _looked_at(
     trials, ended = within_range(trials, whole)
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
-    reversed_sign = _contradicted(whole, checked, SIGNS) if choice is None else ""
-    known = known_causes(profile, seen, options) if not reversed_sign else []
-    in_place = known_causes(profile, seen, options, in_place=True) if choice is None and not reversed_sign else []
+    first = "" if choice else _contradicted(whole, checked, SIGNS) or _of_another_size(profile, seen)
+    known = known_causes(profile, seen, options) if not first else []
+    in_place = known_causes(profile, seen, options, in_place=True) if choice is None and not first else []
     names = [name for h in (*known, *in_place) for name in h.names]
     options = with_hull_held(options) if choice else options
     bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
@@ -274,7 +274,7 @@ def _looked_at(
         result = replace(result, misread=gone.as_all_else_shows(shown))
     if result.verdict not in ("unexplained", "none") or choice is not None:
         return result
-    if contradicted := _contradicted(whole, checked):
+    if contradicted := first or _contradicted(whole, checked):
         return replace(result, contradicted=contradicted, instead=None)
     if result.verdict == "none":
         return result
@@ -354,6 +354,11 @@ def _contradicted(trials: Mapping[str, Trial], checked: Checked, codes: Sequence
                 said = f"{one.what}: the sign of its angle is wrong, or those of heading and yaw rate"
             return f"First put the logs right: in {of} {said}."
     return ""
+
+
+def _of_another_size(profile: ShipProfile, trials: Sequence[Trial]) -> str:
+    """That profile and trials cannot be of one ship as they are; "" where they can."""
+    return "".join(f"First see which ship these trials are of: {said}." for said in another_size(profile, trials))
 
 
 def _swinging(trials: Mapping[str, Trial], L_pp: float) -> tuple[str, float]:

@@ -12,6 +12,7 @@ import pytest
 
 from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
 from mmgtune.backends import Integrator
+from mmgtune.circumstances import another_size
 from mmgtune.diagnose.answering.judging import _left_open
 from mmgtune.diagnose.folder import write_diagnosis
 from mmgtune.errors import OptionError
@@ -162,3 +163,20 @@ def test_windows_are_advised_where_inputs_leave_much_open_in_long_runs(left_open
     bench = SimpleNamespace(trials=[SimpleNamespace(duration=60.0 * minutes)])
     notes = _left_open(bench, SimpleNamespace(left_open=left_open), DiagnoseOptions(restart=restart))
     assert [note.endswith("restart=120") for note in notes] == [True] * told
+
+
+def test_a_profile_of_a_ship_of_another_size_is_told_first():
+    """A minute of search, and "something is wrong that this program cannot name"."""
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "zigzag_10")]
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
+    result = diagnose("esso_osaka_3m", trials, asked)
+    assert result.sentence().startswith("First see which ship these trials are of: the ship makes 2.0")
+    assert "by the approach of 'esso_osaka_3m'" in result.sentence()
+    assert (result.verdict, result.candidates) == ("unexplained", ())
+
+
+@pytest.mark.parametrize("gear", [0.25, 0.6, 1.0, 2.8])
+def test_a_gear_between_shaft_and_counter_makes_no_other_ship(gear):
+    profile = load_profile("suzaku")
+    trials = [replace(one, n=one.n / gear) for one in load_trials("suzaku").trials.values()]
+    assert another_size(profile, trials) == []
