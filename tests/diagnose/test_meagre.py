@@ -168,7 +168,7 @@ def test_windows_are_advised_where_inputs_leave_much_open_in_long_runs(left_open
 def test_a_profile_of_a_ship_of_another_size_is_told_first():
     """A minute of search, and "something is wrong that this program cannot name"."""
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "zigzag_10")]
-    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.X_vr",), leeway=0.0)
     result = diagnose("esso_osaka_3m", trials, asked)
     assert result.sentence().startswith("First see which ship these trials are of: the ship makes 2.0")
     assert "by the approach of 'esso_osaka_3m'" in result.sentence()
