@@ -8,7 +8,7 @@ import numpy as np
 from ..physics.elementary import cos, sin
 from ..physics.quantities import Lanes, State
 from .effect import Parameter, SensorEffect, angle_about_zero
-from .heading_bias import heading_shown
+from .heading_bias import ANTENNA, MIDSHIP, MOVED_FROM, heading_shown
 
 
 class CompassDeviation(NamedTuple):
@@ -22,6 +22,8 @@ class CompassDeviation(NamedTuple):
     cosine_alone: Lanes
     sine_of_twice_alone: Lanes
     cosine_of_twice_alone: Lanes
+    antenna_ahead: Lanes
+    antenna_abeam: Lanes
 
 
 class Harmonics(NamedTuple):
@@ -42,7 +44,7 @@ def compass_deviation(state: State, e: CompassDeviation) -> State:
     The velocity over ground is logged in the axes of the heading shown, but for the part that is of it alone.
     """
     s, c = sin(state.psi), cos(state.psi)
-    return heading_shown(state, _deviation(_turned(e), s, c), _deviation(_alone(e), s, c))
+    return heading_shown(state, _deviation(_turned(e), s, c), _deviation(_alone(e), s, c), e)
 
 
 def compass_deviation_inverse(logged: State, e: CompassDeviation) -> State:
@@ -55,7 +57,7 @@ def compass_deviation_inverse(logged: State, e: CompassDeviation) -> State:
         slope = 1.0 + both.B * c - both.C * s + 2.0 * (both.D * (c * c - s * s) - both.E * 2.0 * s * c)
         psi = psi - (psi + _deviation(both, s, c) - logged.psi) / np.maximum(slope, 0.1)
     s, c = sin(psi), cos(psi)
-    return heading_shown(logged, -_deviation(turned, s, c), -_deviation(alone, s, c))
+    return heading_shown(logged, -_deviation(turned, s, c), -_deviation(alone, s, c), e)
 
 
 def _turned(e: CompassDeviation) -> Harmonics:
@@ -107,7 +109,9 @@ EFFECT = SensorEffect(
     function=compass_deviation,
     inverse=compass_deviation_inverse,
     cites=(),
-    fields={**_harmonics(_TURNED), **_harmonics(_ALONE, "_alone")},
+    fields={**_harmonics(_TURNED), **_harmonics(_ALONE, "_alone"), **ANTENNA},
+    pivots=MIDSHIP,
+    read_off=MOVED_FROM,
     variants=(
         ("sine", "cosine"),
         ("sine_alone", "cosine_alone"),

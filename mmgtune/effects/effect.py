@@ -428,6 +428,7 @@ class SensorEffect(Effect):
         """States whose logs parameters change while the ship moves alike."""
         others = dict.fromkeys((*self.fields, *self.borrowed), 1.0)  # what the ship has, whatever that is
         null = others | {name: one.null for name, one in self.parameters.items()} | dict.fromkeys(self.pivots, 0.5)
+        null |= {name: self.parameters[name].null for name in self.read_off}
         off = {name: null[name] + TRIED for name in parameters}
         logs = [self.function(MOVING, self.params(**values)) for values in (null, {**null, **off})]
         return tuple(name for name in State._fields if getattr(logs[0], name) != getattr(logs[1], name))

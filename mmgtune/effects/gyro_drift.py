@@ -8,7 +8,7 @@ from ..physics.elementary import exp, where
 from ..physics.following import INSTANT
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
-from .heading_bias import heading_shown
+from .heading_bias import ANTENNA, MIDSHIP, MOVED_FROM, heading_shown
 from .signs import each
 
 
@@ -19,6 +19,8 @@ class GyroDrift(NamedTuple):
     heading_alone: Lanes
     yaw_rate: Lanes
     settles: Lanes
+    antenna_ahead: Lanes
+    antenna_abeam: Lanes
 
 
 SHORT = 0.03
@@ -37,7 +39,7 @@ def gyro_drift(start: State, end: State, held: tuple[Lanes], h: Lanes, e: GyroDr
     past = t / np.maximum(e.settles, INSTANT)
     series = 1.0 - past * (1.0 / 2.0 - past * (1.0 / 6.0 - past * (1.0 / 24.0 - past * (1.0 / 120.0 - past / 720.0))))
     drifted = t * where(past < SHORT, series, (1.0 - exp(-past)) / np.maximum(past, SHORT))
-    seen = heading_shown(end, e.heading * drifted, e.heading_alone * drifted)
+    seen = heading_shown(end, e.heading * drifted, e.heading_alone * drifted, e)
     return State(x=seen.x, y=seen.y, psi=seen.psi, u=seen.u, v_m=seen.v_m, r=seen.r + e.yaw_rate * drifted), (t,)
 
 
@@ -102,7 +104,10 @@ EFFECT = FilterEffect(
             typical=lambda _: 1.0 / 600.0,
             bounds_source="from a drift that is even to a minute",
         ),
+        **ANTENNA,
     },
+    pivots=MIDSHIP,
+    read_off=MOVED_FROM,
     form={"settles": 1.0 / 600.0},
     variants=(("heading",), ("heading_alone",), ("yaw_rate",)),
     varies=("heading", "heading_alone"),

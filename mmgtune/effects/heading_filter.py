@@ -6,7 +6,7 @@ from ..components import AT_LEAST_0
 from ..physics.following import followed
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
-from .heading_bias import heading_shown
+from .heading_bias import ANTENNA, MIDSHIP, MOVED_FROM, heading_shown
 
 
 class HeadingFilter(NamedTuple):
@@ -14,6 +14,8 @@ class HeadingFilter(NamedTuple):
 
     time_constant: Lanes
     alone: Lanes
+    antenna_ahead: Lanes
+    antenna_abeam: Lanes
 
 
 def heading_filter(
@@ -23,18 +25,18 @@ def heading_filter(
     shown, but for that part of the lag that is of the heading alone."""
     turned = followed(start.psi, end.psi, held[0], h, e.time_constant)
     alone = followed(start.psi, end.psi, held[1], h, e.alone)
-    return heading_shown(end, turned - end.psi, alone - end.psi), (turned, alone)
+    return heading_shown(end, turned - end.psi, alone - end.psi, e), (turned, alone)
 
 
 def heading_settled(state: State, e: HeadingFilter) -> tuple[State, tuple[Lanes, Lanes]]:
     """The same in a steady turn: T r behind."""
     turned, alone = -e.time_constant * state.r, -e.alone * state.r
-    return heading_shown(state, turned, alone), (state.psi + turned, state.psi + alone)
+    return heading_shown(state, turned, alone, e), (state.psi + turned, state.psi + alone)
 
 
 def heading_filter_inverse(logged: State, e: HeadingFilter) -> State:
     """The motion of a steady turn from what was logged."""
-    return heading_shown(logged, e.time_constant * logged.r, e.alone * logged.r)
+    return heading_shown(logged, e.time_constant * logged.r, e.alone * logged.r, e)
 
 
 def _constant(what: str) -> Parameter:
@@ -62,7 +64,10 @@ EFFECT = FilterEffect(
     fields={
         "time_constant": _constant("in whose axes velocities are logged"),
         "alone": _constant("velocities being logged in the ship's own axes"),
+        **ANTENNA,
     },
+    pivots=MIDSHIP,
+    read_off=MOVED_FROM,
     variants=(("time_constant",), ("alone",)),
     sentence=lambda v: (
         "The compass lagged behind the heading, by a time constant or a delay of "

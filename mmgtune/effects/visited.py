@@ -31,6 +31,8 @@ class Visited:
     rate      (n,) r L / U [-], positive to starboard; NaN near rest
     drift     (n,) beta = atan2(-v_m, u) [rad]; NaN near rest
     shaft     (n,) revolutions of the propellers, their mean [1/s]
+    antenna   forward and to starboard of midship [m], from which all positions were moved there; zeros where they were
+              not, or from several
     """
 
     seconds: FloatArray
@@ -40,6 +42,7 @@ class Visited:
     rate: FloatArray
     drift: FloatArray
     shaft: FloatArray
+    antenna: tuple[float, float] = (0.0, 0.0)
 
     def span(self, values: FloatArray) -> tuple[float, float]:
         """Lowest and highest of some values (n,) beyond which no more than ``MOMENT`` is spent; NaN without any."""

@@ -565,5 +565,6 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
         note="; ".join([*([log_map.note] if log_map.note else []), f"imported with the map {log_map.name}", *notes]),
         cut_from=cut_from,
         derived=piece.derived,
+        antenna=log_map.antenna,
     )
     return trial, {**quality_of(trial, record, piece.grid, piece.began, notes, log_map), "cut": piece.cut}

@@ -65,9 +65,18 @@ class Sailed(Protocol):
 
 def visited_by(trials: Iterable[Sailed], L_pp: float) -> Visited:
     """What trials visit, sample by sample.  L_pp [m]."""
+    trials = list(trials)
     rows = [_samples(trial, L_pp) for trial in trials]
     columns: FloatArray = np.concatenate(rows) if rows else np.zeros((0, 7))
-    return Visited(*columns.T)
+    seconds, rudder, speed, ahead, rate, drift, shaft = columns.T
+    return Visited(seconds, rudder, speed, ahead, rate, drift, shaft, _antenna_of(trials))
+
+
+def _antenna_of(trials: Sequence[Sailed]) -> tuple[float, float]:
+    """Where the positions of all trials were moved to midship from; zeros where they were not, or from several."""
+    found = {getattr(trial, "antenna", None) for trial in trials}
+    common = found.pop() if len(found) == 1 else None
+    return common or (0.0, 0.0)
 
 
 def _samples(trial: Sailed, L_pp: float) -> FloatArray:

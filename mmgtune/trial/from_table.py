@@ -9,13 +9,13 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, brief, kind_of
 from ..units import canonical, name_and_unit
-from .metadata import as_json, nameless, problems_in, without_id
+from .metadata import antenna_of, as_json, nameless, problems_in, without_id
 from .model import Trial, fields_of
 from .raw_logs import TABLE_TO_LOG, table_instead
 from .schema import REQUIRED, known_column
 from .unusable import unusable
 
-FACTS = ("ship", "manoeuvre", "source", "note", "group", "cut_from", "noise", "derived")
+FACTS = ("ship", "manoeuvre", "source", "note", "group", "cut_from", "noise", "derived", "antenna")
 """What may be said of a trial besides."""
 
 
@@ -27,8 +27,8 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
            numbers; units may stand behind the names of those it knows, as in ``to_frame()`` of a trial and of a
            simulated run: "u [m/s]"
     id     name of the trial, unique within a data set; files are named after it
-    facts  fields of ``Trial``: ship, manoeuvre, source ("measured" or "generated"), note, group, cut_from, noise and
-           derived
+    facts  fields of ``Trial``: ship, manoeuvre, source ("measured" or "generated"), note, group, cut_from, noise,
+           derived and antenna
 
     Raises TrialError with everything that is wrong in id, facts and columns, as for a file.
     """
@@ -72,6 +72,8 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     if problems:
         raise TrialError(*problems)
     named = {"ship": "", "manoeuvre": "", "source": "", **facts}
+    if "antenna" in facts:
+        named["antenna"] = antenna_of(as_json(facts))
     return Trial(id=id, **named, **fields_of(columns), ignored=tuple(ignored))
 
 

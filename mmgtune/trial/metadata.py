@@ -15,6 +15,9 @@ from ..limits import FACTS_BYTES, NAME, NESTING, as_float, is_real
 from ..toml_reading import depth, finite
 from .schema import COLUMNS, LARGEST, METADATA, MOTION, SCHEMA, SOURCES, impossible, known_column
 
+LONGEST = 1000.0
+"""Distance from midship [m] that nothing on a ship is at."""
+
 
 def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dict[str, Any], list[Problem]]:
     """The facts written in ``raw`` and what is wrong with them; no facts where there is no metadata.
@@ -49,6 +52,8 @@ def as_json(facts: Mapping[str, Any]) -> dict[str, Any]:
         made["noise"] = {name: as_float(one) if is_real(one) else one for name, one in noise.items()}
     if isinstance(derived, tuple):
         made["derived"] = list(derived)
+    if isinstance(antenna := facts.get("antenna"), tuple):
+        made["antenna"] = [as_float(one) if is_real(one) else one for one in antenna]
     return made
 
 
@@ -85,7 +90,20 @@ def problems_in(facts: Mapping[str, Any], where: str, columns: Sequence[str]) ->
     if not isinstance(derived, list) or not set(map(str, derived)) <= set(MOTION):
         fix = f"write a list of any of {', '.join(MOTION)}, or leave it out"
         problems.append(Problem(f"'derived' is {brief(derived)}, not a list of motion columns", where, fix=fix))
+    if "antenna" in facts and antenna_of(facts) is None:
+        fix = 'write [ahead, to starboard] of midship in m, "antenna": [-25.0, 0.0], or leave it out'
+        problems.append(Problem(f"'antenna' is {brief(facts['antenna'])}, no place on a ship", where, fix=fix))
     return problems + noise_problems(facts.get("noise", {}), where, columns)
+
+
+def antenna_of(facts: Mapping[str, Any]) -> tuple[float, float] | None:
+    """Where positions were measured [m], forward and to starboard of midship; None where no place on a ship is said."""
+    place = facts.get("antenna")
+    if not isinstance(place, list) or len(place) != 2:
+        return None
+    if not all(isinstance(one, int | float) and not isinstance(one, bool) and abs(one) < LONGEST for one in place):
+        return None
+    return float(place[0]), float(place[1])
 
 
 def nameless(id: object) -> bool:

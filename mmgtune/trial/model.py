@@ -41,6 +41,8 @@ class Trial(Plotted):
     begins     when the time of a window begins, in the time of its whole trial [s]
     group      what it has in common with other runs, such as the day or the loading; "" where the file does not say
     derived    motion columns, by their names in the file, that were worked out from others and measured by nothing
+    antenna    forward and to starboard of midship [m], where positions were measured that were moved to midship along
+               the heading logged; None where they were not
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
     Raises TrialError for arrays without numbers or of other lengths than ``t``, for ``extra`` that repeats a field, and
@@ -72,6 +74,7 @@ class Trial(Plotted):
     cut_from: str = ""
     group: str = ""
     derived: tuple[str, ...] = ()
+    antenna: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         shape = (np.size(self.t),)

@@ -21,7 +21,7 @@ from ..resources import must_be_name
 from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
 from .footer import rows_of
-from .metadata import as_json, facts_of, problems_in
+from .metadata import antenna_of, as_json, facts_of, problems_in
 from .model import Trial, fields_of
 from .raw_logs import import_commands, refuse_log
 from .schema import METADATA_KEY, SCHEMA, known_column
@@ -60,6 +60,7 @@ def read_trial(path: Path | str) -> Trial:
         cut_from=facts.get("cut_from", ""),
         group=facts.get("group", ""),
         derived=tuple(facts.get("derived", ())),
+        antenna=antenna_of(facts),
         path=path,
         sha256=held.sha256,
         sealed=DIGEST_KEY in held.metadata,
@@ -101,6 +102,8 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
         facts["group"] = trial.group
     if trial.derived:
         facts["derived"] = trial.derived
+    if trial.antenna:
+        facts["antenna"] = list(trial.antenna)
     facts = as_json(facts)
     problems = problems_in(facts, f"trial {brief(trial.id)}", tuple(values))
     if problems:

@@ -109,7 +109,7 @@ def directions(columns: Mapping[str, Any]) -> list[str]:
     return [name for name in columns if (found := surrounding(name)) is not None and found.counted_from]
 
 
-METADATA = ("schema", "ship", "id", "manoeuvre", "source", "noise", "note", "cut_from", "group", "derived")
+METADATA = ("schema", "ship", "id", "manoeuvre", "source", "noise", "note", "cut_from", "group", "derived", "antenna")
 SOURCES = ("measured", "generated")
 
 ATTRIBUTES = {name: "v_m" if name == "v" else name for name in REQUIRED}

@@ -19,6 +19,7 @@ from mmgtune.diagnose.signatures.wording import parameters_in_words
 from mmgtune.effects import effects, find_effect
 from mmgtune.errors import OptionError
 from mmgtune.motions import simulate_trials
+from mmgtune.physics.frame import to_earth
 from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.trial import load_trials
 from tests.command import run
@@ -215,6 +216,23 @@ def test_what_the_profile_has_and_the_ship_has_no_more_is_told(tmp_path):
     assert "; by the profile the rudder stood 1° to starboard" in result.sentence()
     (angle,) = result.to_dict()["causes"][0]["parameters"].values()
     assert angle["ci95"][0] < 0.0 < angle["ci95"][1]
+
+
+@pytest.mark.parametrize("said", [True, False])
+def test_positions_moved_from_an_antenna_by_a_compass_that_is_off(said, tmp_path):
+    """Where the trials say that they were, the compass accounts for it: it was another antenna to starboard."""
+    off, antenna = np.radians(3.0), (-70.0, 0.0)
+    trials = load_trials(files(replace(null(3), effects={"heading-bias": {"angle": off}}), tmp_path))
+    made = {}
+    for id, one in trials.trials.items():
+        places, shown = (np.array(to_earth(psi, *antenna)) for psi in (one.psi - off, one.psi))
+        x, y = np.array([one.x, one.y]) + places - shown
+        made[id] = replace(one, x=x, y=y, antenna=antenna if said else None)
+    asked = DiagnoseOptions(effects=("heading-bias", "antenna", "current"))
+    result = diagnose("suzaku", replace(trials, trials=made), asked)
+    assert [cause.tag for cause in result.causes] == (["heading-bias"] if said else ["heading-bias", "antenna"])
+    (angle,) = (one for one in result.causes[0].estimates.values())
+    assert angle.low < off < angle.high
 
 
 def test_half_a_wind_is_none():

@@ -13,6 +13,7 @@ from mmgtune.effects.hull_term import TERMS
 from mmgtune.effects.memory import STIFF
 from mmgtune.model import Model
 from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, forces
+from mmgtune.physics.frame import to_earth
 from mmgtune.physics.quantities import UNKNOWN, Force, State, WindCoefficients
 from mmgtune.physics.wind import wind_shape
 from mmgtune.profile import load_profile, with_effects
@@ -310,13 +311,32 @@ def test_velocities_of_one_point_and_positions_of_another_are_told_in_one_senten
 
 def test_a_biased_compass_turns_the_axes_and_not_the_track():
     effect = find_effect("heading-bias")
-    e = effect.params(0.05, 0.0)
+    e = effect.params(0.05, 0.0, 0.0, 0.0)
     seen = effect.function(MOVING, e)
     assert seen.psi == pytest.approx(MOVING.psi + 0.05)
     assert earth(seen) == pytest.approx(earth(MOVING))
     assert effect.inverse(seen, e) == pytest.approx(MOVING)
-    alone = effect.function(MOVING, effect.params(0.0, 0.05))
+    alone = effect.function(MOVING, effect.params(0.0, 0.05, 0.0, 0.0))
     assert alone == pytest.approx(MOVING._replace(psi=MOVING.psi + 0.05))
+
+
+@pytest.mark.parametrize(
+    ("tag", "values"),
+    [
+        ("heading-bias", {"angle": 0.05}),
+        ("heading-bias", {"alone": 0.05}),
+        ("compass-deviation", {"sine": 0.03, "cosine_alone": -0.02}),
+    ],
+)
+def test_positions_of_an_antenna_are_moved_along_the_heading_shown(tag, values):
+    """120 m ahead by a compass 3 deg off, midship is 6.3 m to the side: that was an antenna to starboard."""
+    effect, ahead, abeam = find_effect(tag), -120.0, 4.0
+    null = {name: one.null for name, one in effect.parameters.items()}
+    e = effect.params(**null | values | {"antenna_ahead": ahead, "antenna_abeam": abeam})
+    seen = effect.function(MOVING, e)
+    antenna = np.array([MOVING.x, MOVING.y]) + to_earth(MOVING.psi, ahead, abeam)
+    assert np.array([seen.x, seen.y]) == pytest.approx(antenna - to_earth(seen.psi, ahead, abeam))
+    assert effect.inverse(seen, e) == pytest.approx(MOVING)
 
 
 @pytest.mark.parametrize(

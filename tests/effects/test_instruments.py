@@ -168,7 +168,7 @@ def test_deviation_of_a_compass():
     """Semicircular and quadrantal, each as a sine with a phase."""
     effect = find_effect("compass-deviation")
     state = State(0.0, 0.0, np.linspace(-7.0, 7.0, 50), 2.5, -0.3, 0.01)
-    e = effect.params(0.1, -0.1, 0.05, 0.02, 0.05, 0.02, -0.03, 0.01)
+    e = effect.params(0.1, -0.1, 0.05, 0.02, 0.05, 0.02, -0.03, 0.01, 0.0, 0.0)
     seen = effect.function(state, e)
 
     def harmonic(k, sine, cosine):

@@ -157,6 +157,7 @@ delta = {{ column = "rudder", unit = "deg", positive = "starboard" }}
         assert "u and v were not measured" in back.note
         assert "r was not measured" in back.note
         assert back.derived == ("u", "v", "r")
+        assert back.antenna == (ahead, abeam)
         assert "projection of WGS 84" in back.note
     text = text.replace("[antenna]", "[velocity]\npoint = 'antenna'\n[antenna]")
     assert imported(log, text).n_samples == trial.n_samples

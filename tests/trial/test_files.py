@@ -1,12 +1,15 @@
 """Trial files: what goes in comes out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from mmgtune.errors import OutputError
+from mmgtune import trial_of
+from mmgtune.errors import OutputError, TrialError
 from mmgtune.trial import Trial, check_trial, load_trials, read_trial, write_trial
 
 COLUMNS = ("x", "y", "psi", "u", "v_m", "r", "n", "delta")
@@ -104,3 +107,22 @@ def test_bundled_trials_are_labelled_generated_and_sound():
     for trial in data.trials.values():
         assert "Generated, not measured" in trial.note
         assert [f for f in check_trial(trial) if f.severity == "warning"] == []
+
+
+@pytest.mark.parametrize("antenna", [(-120.0, 6.5), None])
+def test_where_positions_were_moved_from_is_kept(antenna, tmp_path):
+    trial = replace(load_trials("suzaku").trials["turn_p35"], antenna=antenna)
+    assert read_trial(write_trial(trial, tmp_path / "trial.parquet")).antenna == antenna
+    assert trial_of({name: trial.columns[name] for name in trial.columns}, "one", antenna=(3.0, 1)).antenna == (
+        3.0,
+        1.0,
+    )
+
+
+@pytest.mark.parametrize("antenna", [(1.0,), (1.0, 2e3), (float("nan"), 0.0), (True, 0.0), ("3 m", 0.0)])
+def test_an_antenna_that_is_on_no_ship_is_refused(antenna, tmp_path):
+    trial = load_trials("suzaku").trials["turn_p35"]
+    with pytest.raises(TrialError, match="no place on a ship"):
+        write_trial(replace(trial, antenna=antenna), tmp_path / "trial.parquet")
+    with pytest.raises(TrialError, match="no place on a ship"):
+        trial_of(trial.columns, "one", antenna=antenna)

@@ -16,7 +16,7 @@ from ...errors import Problem, TrialError, reason
 from ...files import require_regular
 from ..digest import DIGEST_KEY, digest_of
 from ..footer import rows_of
-from ..metadata import facts_of
+from ..metadata import antenna_of, facts_of
 from ..parquet import another_digest, layout_of, numbers, unreadable
 from ..raw_logs import refuse_log
 from ..schema import FEWEST_SAMPLES, METADATA_KEY
@@ -58,6 +58,7 @@ class Voyage:
     columns    those that hold numbers, by name
     ignored    those that do not
     sealed     whether the file holds a digest of columns and facts, see ``verify``
+    antenna    see ``Trial``
     """
 
     id: str
@@ -72,6 +73,7 @@ class Voyage:
     columns: tuple[str, ...]
     ignored: tuple[str, ...]
     sealed: bool
+    antenna: tuple[float, float] | None
     _groups: tuple[int, ...] = field(repr=False)
 
     @property
@@ -175,6 +177,7 @@ def open_voyage(path: Path | str) -> Voyage:
         columns=tuple(layout.wanted),
         ignored=layout.ignored,
         sealed=DIGEST_KEY in metadata,
+        antenna=antenna_of(facts),
         _groups=groups,
     )
 

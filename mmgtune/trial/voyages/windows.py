@@ -178,6 +178,7 @@ def _window(voyage: Voyage, block: Block, first: int, last: int) -> Window:
         part_of=voyage.id,
         begins=begins - voyage.begins,
         cut_from=voyage.cut_from,
+        antenna=voyage.antenna,
         **fields_of({**columns, "t": columns["t"] - begins}),
     )
     return Window(trial, block.row + first, begins)
