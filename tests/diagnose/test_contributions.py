@@ -216,7 +216,9 @@ def test_a_ship_lighter_than_her_profile_is_told_beside_waves(tmp_path):
     ("tag", "by", "beside", "share"),
     [
         ("hull-term", "", "shallow-water", 0.05),
-        ("hull-term", "", "engine-droop", 0.02),
+        ("hull-term", "", "engine-droop", 0.05),
+        ("hull-term", "", "rudder-offset", 0.02),
+        ("rpm-scale", "", "engine-droop", 0.003),
         ("hull-term", "", "gyro-scale", 0.003),
         ("hull-term", "", "hull-term", 0.003),
         ("shallow-water", "", "hull-term", 0.003),
@@ -1138,6 +1140,7 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
         explained_share=0.99,
         together=SimpleNamespace(sentence="All trials together say more."),
         contradicted="",
+        candidates=("antenna", "hull-term"),
         jumped={},
         wrong_logs={},
         ended={},

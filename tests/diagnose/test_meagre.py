@@ -170,7 +170,7 @@ def test_a_profile_of_a_ship_of_another_size_is_told_first():
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "zigzag_10")]
     asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.X_vr",), leeway=0.0)
     result = diagnose("esso_osaka_3m", trials, asked)
-    assert result.sentence().startswith("First see which ship these trials are of: the ship makes 2.0")
+    assert result.sentence().startswith("First see which ship these trials are of: the ship makes 1.8")
     assert "by the approach of 'esso_osaka_3m'" in result.sentence()
     assert (result.verdict, result.candidates) == ("unexplained", ())
 

@@ -50,12 +50,12 @@ trials are asked whether it does any good."""
 FORM, FORM_IF_ROUGH, FORM_OF_TERM = 0.0005, 0.003, 0.02
 """Share of the error that a cause leaves whose form is 2 % off, one whose formula is no better than 5 %, and, to other
 forces and to values that differ from run to run and bend to all that is left, one of many terms, which is the nearest
-to what there is; and, to such a term, any cause that is no error of a log: engines give way by laws of their own."""
+to what there is; and, to such a term, any cause that is no error of a log."""
 
 FORM_OF_HULL = 0.05
-"""Likewise, to terms of the hull, of a cause that changes the hull's force as a formula has it, and to a force of wind
-or waves of another such force: formulas of shallow water, winds and waves differ by a fifth, and what one leaves of the
-other is a term, or a light wind."""
+"""Likewise, to terms of the hull, of a cause whose formula is rough, as of the hull's force in shallow water and of an
+engine that gives way, and to a force of wind or waves of another such force: formulas of shallow water, winds and waves
+differ by a fifth, and what one leaves of the other is a term, or a light wind."""
 
 HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
