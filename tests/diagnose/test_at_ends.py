@@ -112,6 +112,18 @@ def test_a_ship_unlike_the_formulas_of_her_profile_gets_no_false_cause():
     assert document["assumptions"][-2]["name"] == "31 targets from formulas"
 
 
+@pytest.mark.parametrize("has", [{"N_rrr": -0.008}, {}])
+def test_a_term_that_the_profile_has_is_not_lacking(has):
+    term = Estimate("effects.hull-term.N_rrr", -0.0033, -0.0039, -0.0027, 0.0003)
+    said = Cause("hull-term", find_effect("hull-term"), {term.name: term}, 0.0, None, has=has).sentence
+    if has:
+        assert (
+            said == "The coefficient of the term N_rrr of the hull is off by -0.00330 ± 0.00060: the profile has -0.008"
+        )
+    else:
+        assert said.startswith("The hull force lacks a term N_rrr of -0.0033")
+
+
 @pytest.mark.parametrize(("value", "told"), [(0.5, True), (0.6, False)])
 def test_a_size_at_the_end_of_what_was_looked_for_says_so(value, told):
     """A rudder logged in per cent of 35 deg and read in degrees moved by 0.5 times its angle, and by 0.35 in truth."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...backends import STATES
+from ...effects import Effect
 from ...fitting.journal import side_by_side
 from ...fitting.one_sided import coverage_notes, followers
 from ...hooks import Hooks
@@ -406,14 +407,26 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
         form = {name: sizes[name] for name in bench.believed.form_of(own[0].effect) if name in sizes}
         effect, variant = own[0].effect, tuple(dict.fromkeys(name for h in own for name in h.variant))
         runs = ByRun.of(effect, variant, by, own[0].groups, bench.trials, estimated) if by else None
-        causes.append(Cause(tag, effect, {} if by else estimated | form, p_value, gain, runs))
+        has = _in_profile(bench, effect)
+        causes.append(Cause(tag, effect, {} if by else estimated | form, p_value, gain, runs, has=has))
     return causes
+
+
+def _in_profile(bench: Workbench, effect: Effect) -> dict[str, float]:
+    """What the profile has already of terms that an effect may add to its hull, by name: of a polynomial in the same
+    terms."""
+    profile = bench.model.profile
+    if not effect.one_of_many or profile.sections["hull"].component.tag != "cubic":
+        return {}
+    own = {name: profile.value(full) for name, full in effect.absorbed.items() if full in profile.names()}
+    return {name: value for name, value in own.items() if value}
 
 
 def _trace(bench: Workbench, aside: Aside) -> Trace:
     one = aside.hypothesis
     runs = ByRun.of(one.effect, one.variant, one.by, one.groups, bench.trials, aside.estimates) if one.by else None
-    cause = Cause(one.tag, one.effect, {} if one.by else aside.estimates, aside.p_value, None, runs)
+    has, estimated = _in_profile(bench, one.effect), {} if one.by else aside.estimates
+    cause = Cause(one.tag, one.effect, estimated, aside.p_value, None, runs, has=has)
     return Trace(cause, aside.contribution, tuple(aside.alike))
 
 

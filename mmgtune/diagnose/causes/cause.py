@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
 from ...displayed import Brief
 from ...documents import finite
 from ...effects import Effect, Parameter, SensorEffect
-from ...phrases import small
+from ...phrases import capital, small
 from ..bench.runs import IN_WORDS
 from ..signatures.intervals import AT_END, Estimate
 from ..signatures.wording import parameters_in_words
@@ -29,6 +29,7 @@ class Cause:
     words      what it is then: the integration step where they are empty
     estimates  of what is the same in all runs
     runs       what differs between them, None where nothing does
+    has        what the profile has already of terms that are to be added, by name
     """
 
     tag: str
@@ -38,6 +39,7 @@ class Cause:
     gain_test: float | None
     runs: ByRun | None = None
     words: str = ""
+    has: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def sentence(self) -> str:
@@ -48,8 +50,20 @@ class Cause:
             return "The integration step of the simulation is too coarse"
         if self.runs is not None:
             return self.runs.sentence
-        own = self.effect.sentence(parameters_in_words(self.effect, self.estimates))
+        told = parameters_in_words(self.effect, self.estimates)
+        if told and set(told) <= set(self.has):
+            return self._more_of(told)
+        own = self.effect.sentence(told)
         return f"{own}; by the profile {small(self._stated)}" if self._stated else own
+
+    def _more_of(self, told: Mapping[str, str]) -> str:
+        """Terms of which the profile has something: none of them is lacking."""
+        fields = self.effect.parameters if self.effect else {}
+        each = [
+            f"the {fields[name].label} of the hull is off by {value}: the profile has {self.has[name]:.4g}"
+            for name, value in told.items()
+        ]
+        return capital("; ".join(each))
 
     @property
     def _stated(self) -> str:
