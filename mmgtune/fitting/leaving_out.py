@@ -416,6 +416,13 @@ class _ToAllRuns:
         return _Part(runs, values, records, repeated, stated)
 
 
+FROM_THE_FIRST_SAMPLE = (
+    "Initial states are estimated of the trials that are tuned to; one left out is simulated from its first sample as "
+    "measured, noise and all."
+)
+"""What makes errors of trials left out larger than those of a fit to them."""
+
+
 def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: LeaveOutOptions) -> list[str]:
     """What a reader must know before trusting the numbers."""
     tuned = tune_trials(trials)
@@ -435,6 +442,7 @@ def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: L
         *(f"{capital(note)}." for note in around),
         *coverage_notes(model, targets, Coverage.of(tuned, model.L_pp)),
         *beyond,
+        *([FROM_THE_FIRST_SAMPLE] if options.initial == "estimated" else []),
         *held_words(model.profile, options, tuned),
     ]
 
