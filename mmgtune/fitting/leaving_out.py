@@ -43,7 +43,7 @@ from .comparison import ComparedTrials, TrialComparison
 from .extending import held_words, settled, tune_trials
 from .folder import motions_table
 from .journal import finished, journalled
-from .least_squares import solve
+from .least_squares import fit_offsets, solve
 from .one_sided import coverage_notes
 from .optimum import edge_ridge, random_starts
 from .problem import FitProblem
@@ -297,7 +297,7 @@ def _leave_out(
     chosen = [trials.trials[name] for name in trials.tune]
     sigma = spread(chosen) if chosen else {}
     seen = [trial for trial in chosen if trial.id in left]
-    given = fit.simulated(seen)
+    given = fit.simulated(seen, fit.before)
     return LeftOut(
         tuple(part.values for part in parts),
         tuple(part.runs for part in parts),
@@ -380,13 +380,14 @@ class _ToAllRuns:
         best = min(ends, key=lambda end: end.J)
         return cls(profile, whole, trials, asked, options, problem, before, best.unit, best.J, ridge, weight)
 
-    def simulated(self, series: Sequence[Trial], theta: FloatArray | None = None) -> dict[str, TrialRecord]:
-        """Trials by id, with the columns ``theta`` of coefficients or the profile's."""
+    def simulated(self, series: Sequence[Trial], unit: FloatArray) -> dict[str, TrialRecord]:
+        """Trials by id, with coefficients at a point of the unit cube (n_targets,); where initial states are estimated,
+        each from that which fits it best."""
         if not series:
             return {}
-        integrator, backend = self.options.make_integrator(), self.options.backend
-        predictor = as_predictor(self.problem.model, theta=theta, integrator=integrator, backend=backend)
-        return {one.trial.id: one for one in evaluate(predictor, series)}
+        problem = make_problem(self.profile, self.trials, self.options, [one.id for one in series])
+        offsets = None if problem.sigma is None else fit_offsets(problem, unit)
+        return {one.trial.id: one for one in evaluate(problem.predictor(unit[:, None]), series, offsets=offsets)}
 
     def without(self, out: Sequence[str], others: Sequence[str], hooks: Hooks) -> _Part | None:
         """Fit to the other runs and score those left out; None where it was stopped before its end."""
@@ -405,7 +406,7 @@ class _ToAllRuns:
             return None
         values = dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True))
         theta = problem.theta(fitted.unit[:, None])
-        records = self.simulated(series, theta)
+        records = self.simulated(series, fitted.unit)
         both = {"before": model.matrix()[:, 0], "left_out": theta[:, 0]}
         stated = compare_stated(model, both, indices, dict.fromkeys(out, "tune"), self.options.backend)
         repeated = {}
@@ -414,13 +415,6 @@ class _ToAllRuns:
             again = repetitions(as_predictor(model, theta=theta), _named(self.whole, series))
             repeated = {one.id: one for one in again}
         return _Part(runs, values, records, repeated, stated)
-
-
-FROM_THE_FIRST_SAMPLE = (
-    "Initial states are estimated of the trials that are tuned to; one left out is simulated from its first sample as "
-    "measured, noise and all."
-)
-"""What makes errors of trials left out larger than those of a fit to them."""
 
 
 def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: LeaveOutOptions) -> list[str]:
@@ -442,7 +436,6 @@ def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: L
         *(f"{capital(note)}." for note in around),
         *coverage_notes(model, targets, Coverage.of(tuned, model.L_pp)),
         *beyond,
-        *([FROM_THE_FIRST_SAMPLE] if options.initial == "estimated" else []),
         *held_words(model.profile, options, tuned),
     ]
 
