@@ -17,6 +17,8 @@ from ..maps.mapping import TimeSource
 
 MOST = 120
 """Windows of a log."""
+FEW = 12
+"""Windows of a log of few rows, if these are three in each: of runs logged every ten seconds."""
 ROWS = 12_000
 """Rows that are looked at, spread over the log."""
 SELDOM = 3.0
@@ -51,7 +53,7 @@ class Windows:
             resumed[1:] = steps > PAUSE * np.median(steps)
         self.periods = [period(one, resumed) for one in columns]
         self.columns = [_clean(one, turn) for one, turn in zip(columns, self.periods, strict=True)]
-        count = int(np.clip(len(kept) // 6, 2, MOST))
+        count = int(np.clip(max(len(kept) // 6, min(FEW, len(kept) // 3)), 2, MOST))
         self.edges = np.unique(np.linspace(0, max(1, len(kept) - 1), count + 1).astype(np.intp))
         self.pauses = self._pauses(resumed)
 
