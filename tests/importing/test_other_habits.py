@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +88,24 @@ def test_a_compass_that_would_count_counterclockwise_is_doubted(tmp_path: Path) 
     proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
     assert proposal.guesses["psi"].confidence == "likely"
     assert any("as no compass does: where 'Lon' is to the west" in note for note in proposal.notes)
+
+
+@pytest.mark.parametrize("sides", [(1, -1), (1, 1)])
+@pytest.mark.parametrize("positive", ["starboard", "port"])
+def test_turns_logged_every_ten_seconds(tmp_path: Path, positive: str, sides: tuple[int, int]) -> None:
+    """Forty rows a run were told by names alone; the side of a rudder shows where there are turns to both."""
+    logs = []
+    for k, side in enumerate(sides):
+        circle = suzaku("turn_p35")
+        one = replace(circle, y=side * circle.y, psi=side * circle.psi, r=side * circle.r, delta=side * circle.delta)
+        columns = {name: values[::10] for name, values in logged(replace(one, v_m=side * one.v_m)).items()}
+        columns["heading"] = np.round(columns["heading"])
+        columns["rudder"] = columns["rudder"] * (1.0 if positive == "starboard" else -1.0)
+        logs.append(write_csv(tmp_path / f"log{k}.csv", columns))
+    proposal = propose_map(logs)
+    assert proposal.guesses["psi"].confidence == "sure"
+    said = str(proposal.guesses["delta"].keys["positive"])
+    assert said == positive if set(sides) == {1, -1} else said.startswith("?")
 
 
 @pytest.mark.parametrize("exchanged", [True, False])

@@ -12,7 +12,7 @@ from ...units import DEG
 from .finder import Finder
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
-from .orders import TURNS, rudders, shafts
+from .orders import TURNS, rudders, shafts, side_of_circles
 from .words import LOG_SPEED, ORDER, OTHER, ROLL, side_named, turns
 
 WAY = (0.01, 0.04)
@@ -40,6 +40,7 @@ def _rudder_among(find: Finder, columns: Sequence[int], remark: str = "") -> boo
     weights: dict[tuple[int, bool], float] = defaultdict(float)
     sides: dict[int, list[int]] = defaultdict(list)
     strongest: dict[int, tuple[float, str]] = {}
+    circles: dict[int, list[tuple[int, int]]] = defaultdict(list)
     names = [name for name, item in INPUTS.items() if item.role == "rudder"]
     for look in find.looks:
         # Degrees with N, S, E or W are no angles of a rudder; S alone would look like one, of the wrong sign.
@@ -48,8 +49,14 @@ def _rudder_among(find: Finder, columns: Sequence[int], remark: str = "") -> boo
             weights[one.column, one.degrees] += one.weight
             if one.evidence.side:
                 sides[one.column].append(one.evidence.side)
+            if one.circle:
+                circles[one.column].append(one.circle)
             if one.weight > strongest.get(one.column, (0.0, ""))[0]:
                 strongest[one.column] = one.weight, str(one.evidence)
+    for column, turns_of in circles.items():
+        if not sides[column] and (side := side_of_circles(turns_of)):
+            sides[column] = [side] * len(turns_of)
+            strongest[column] = (0.0, f"in {len(turns_of)} turns with it over to one side, some to either")
     named = {k for k, _ in weights if find.said[k] in names}
     pairs = {find.said[k]: k for k in named if find.said[k] != "delta"}
     if len(pairs) == 2:

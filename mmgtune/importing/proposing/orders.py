@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...arrays import FloatArray
 from ...trial.checks.cross_checks import ADVANCE
 from ...units import DEG, factors
 from ..conventions import RudderEvidence, rudder_evidence
@@ -15,18 +16,27 @@ from .look import Look
 LARGEST = 1.75
 """Rudder angle [rad] beyond which a column is in degrees."""
 
+OVER, FEWEST_OVER, ONE_SIDE = 5.0 * DEG, 8, 0.9
+"""Rudder angle [rad] that is over, samples of a turn at least, and mean over mean size, of the angle and of the yaw
+rate, from which both are to one side."""
+
 TURNS = {one: factor for one, factor in factors("1/s").items() if one != "1/s"}
 """Units of revolutions, in turns a second."""
 
 
 @dataclass(frozen=True)
 class Rudder:
-    """A column that a ship answers to as to her rudder; ``weight`` is how clearly."""
+    """A column that a ship answers to as to her rudder.
+
+    weight  how clearly
+    circle  in a turn to one side: the sign of its angle, and the side she turns to (1: starboard); else None
+    """
 
     column: int
     degrees: bool
     evidence: RudderEvidence
     weight: float
+    circle: tuple[int, int] | None
 
 
 def rudders(look: Look, among: Sequence[int], units_said: Sequence[str]) -> list[Rudder]:
@@ -54,8 +64,31 @@ def rudders(look: Look, among: Sequence[int], units_said: Sequence[str]) -> list
         evidence = rudder_evidence(t, {"u": ahead, "r": rate, "delta": filled, "n": np.ones(len(t))})
         # A rudder stands for a while between orders, which no motion does.
         still = float(np.mean(np.abs(np.diff(filled)) < 1e-3 * np.ptp(filled)))
-        found.append(Rudder(k, degrees, evidence, abs(evidence.gain) * (0.3 + still)))
+        weight = abs(evidence.gain) * (0.3 + still)
+        found.append(Rudder(k, degrees, evidence, weight, _circle(filled, rate, ahead)))
     return sorted(found, key=lambda one: -one.weight)
+
+
+def _circle(delta: FloatArray, rate: FloatArray, ahead: FloatArray) -> tuple[int, int] | None:
+    """Of a turn with the rudder over to one side: the sign of its angle, and the side the ship turns to; else None.
+
+    delta [rad], rate [rad/s] and ahead [m/s], (n_samples,)
+    """
+    over = (np.abs(delta) > OVER) & np.isfinite(rate) & (ahead > 0.0)
+    if over.sum() < FEWEST_OVER or over.mean() < 0.3:
+        return None
+    angle, turn = delta[over], rate[over]
+    sides = [float(np.mean(one)) / max(float(np.mean(np.abs(one))), 1e-300) for one in (angle, turn)]
+    if min(map(abs, sides)) < ONE_SIDE:
+        return None
+    return int(np.sign(sides[0])), int(np.sign(sides[1]))
+
+
+def side_of_circles(circles: Collection[tuple[int, int]]) -> int:
+    """The side that positive angles turn a ship to, 1 starboard, where there are turns to either side; else 0: a ship
+    that turns to one side whatever her rudder does shows nothing."""
+    towards = {angle * side for angle, side in circles}
+    return towards.pop() if len(towards) == 1 and len({angle for angle, _ in circles}) == 2 else 0
 
 
 @dataclass(frozen=True)
