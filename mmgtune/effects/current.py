@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..components import AT_LEAST_0
 from ..phrases import capital
 from ..physics.elementary import where
 from ..physics.frame import to_ship
@@ -22,6 +23,7 @@ class Current(NamedTuple):
     east_rate: Lanes
     measured: Lanes
     turned: Lanes
+    carried: Lanes
 
 
 def current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
@@ -35,9 +37,15 @@ def current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lane
 
 
 def rate_of_current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
-    """How fast the current changes over ground, in the ship's axes [m/s^2]: constant between two samples."""
+    """How fast the current changes over ground and takes the ship along, in her axes [m/s^2]: constant between two
+    samples.
+
+    Water that gains speed has a pressure gradient, by which a ship gains as much; ``carried`` is the share of that, 0
+    for one that only the forces of the flow take along.
+    """
     logged_north, logged_east = around.current_north_rate, around.current_east_rate
-    return _in_the_ship(state, around, e, logged_north, logged_east, e.north_rate, e.east_rate)
+    ahead, starboard = _in_the_ship(state, around, e, logged_north, logged_east, e.north_rate, e.east_rate)
+    return e.carried * ahead, e.carried * starboard
 
 
 def _in_the_ship(
@@ -82,7 +90,12 @@ def _sentence(v: Mapping[str, str]) -> str:
         return steady
     if "gaining" not in v:
         return f"{steady}, which hardly changed during a run: by {v['gain']}"
-    return f"{steady} at the beginning of a run, which gained {v['gain']} towards {v['gaining']}"
+    grew = f"{steady} at the beginning of a run, which gained {v['gain']} towards {v['gaining']}"
+    return (
+        f"{grew} and carried the ship along by {v['carried']} of that, her drag alone by the rest"
+        if "carried" in v
+        else grew
+    )
 
 
 EFFECT = FlowEffect(
@@ -103,10 +116,20 @@ EFFECT = FlowEffect(
         "east_rate": _rate("east"),
         "measured": factor_on_flow_measured("the current", 0.2),
         "turned": turned_on_measured("the current", "sets to"),
+        "carried": Parameter(
+            "share of what the water gains that a ship gains with it, her drag apart",
+            null=1.0,
+            low=AT_LEAST_0,
+            high=1.0,
+            bounds=lambda _: (0.0, 1.0),
+            typical=lambda _: 0.3,
+            bounds_source="from a ship that only drag takes along to one that goes with the water, as theory has it",
+        ),
     },
     variants=(
         ("north", "east"),
         ("north", "east", "north_rate", "east_rate"),
+        ("north", "east", "north_rate", "east_rate", "carried"),
         ("measured",),
         ("turned",),
         ("measured", "turned"),
@@ -114,7 +137,7 @@ EFFECT = FlowEffect(
     told_as={("north", "east"): ("speed", "towards"), ("north_rate", "east_rate"): ("gain", "gaining")},
     sentence=_sentence,
     of_measured={"measured": "current", "turned": "current"},
-    besides=("north_rate", "east_rate"),
+    besides=("north_rate", "east_rate", "carried"),
     rough_with=("north_rate", "east_rate"),
     stand_in=("north", "east", "north_rate", "east_rate"),
     varies=("north", "east", "north_rate", "east_rate"),

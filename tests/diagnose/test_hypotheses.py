@@ -42,7 +42,8 @@ def test_measured_in_any_trial_is_what_is_looked_for(trials, tag):
 
 def test_without_columns_the_constants_are(trials):
     assert variants(trials, "wind") == [("speed", "direction")]
-    assert variants(trials, "current") == [("north", "east"), ("north", "east", "north_rate", "east_rate")]
+    tide = ("north", "east", "north_rate", "east_rate")
+    assert variants(trials, "current") == [("north", "east"), tide, (*tide, "carried")]
     assert variants(trials, "shallow-water") == [("depth",)]
     assert variants(trials, "waves") == []
 

@@ -263,7 +263,7 @@ def test_memory_is_a_lag_of_first_order():
 def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
     north, east = 0.3, -0.2
     current = find_effect("current")
-    u, v = current.function(MOVING, STILL, current.params(north, east, 0.0, 0.0, 1.0, 0.0))
+    u, v = current.function(MOVING, STILL, current.params(north, east, 0.0, 0.0, 1.0, 0.0, 1.0))
     towards = math.atan2(east, north) - MOVING.psi
     speed = math.hypot(north, east)
     assert (u, v) == pytest.approx((speed * math.cos(towards), speed * math.sin(towards)))
@@ -271,9 +271,10 @@ def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
     logged = 0.5 * speed * np.exp(1j * (math.atan2(east, north) + 0.4))
     rates = {"current_north_rate": 1e-3 * logged.real, "current_east_rate": 1e-3 * logged.imag}
     water = STILL._replace(current_known=1.0, current_north=logged.real, current_east=logged.imag, **rates)
-    e = current.params(9.0, 9.0, 9.0, 9.0, 2.0, 0.4)
+    e = current.params(9.0, 9.0, 9.0, 9.0, 2.0, 0.4, 1.0)
     assert current.function(MOVING, water, e) == pytest.approx((u, v))
     assert current.rate(MOVING, water, e) == pytest.approx((1e-3 * u, 1e-3 * v))
+    assert current.rate(MOVING, water, e._replace(carried=0.3)) == pytest.approx((3e-4 * u, 3e-4 * v))
     assert current.function(MOVING, water, e._replace(measured=-2.0)) == pytest.approx((-u, -v))
     # A share of the wind along it and to its right.
     effect, air = find_effect("wind-drift"), blowing(-4.0, 3.0)
