@@ -245,6 +245,18 @@ def test_half_a_wind_is_none():
     assert [known.parameters for known in result.detectability] == [("speed", "direction")]
 
 
+def test_what_shows_of_a_cause_and_which_others_are_like_it():
+    """Of a current how it carries a ship along shows in no trial before it is known to grow."""
+    trials = load_trials("suzaku")
+    one = replace(trials, tune=trials.tune[:1], test=())
+    result = diagnose("suzaku", one, DiagnoseOptions(effects=("current", "wave-drift", "speed-scale", "log-zero")))
+    told = [known.parameters for known in result.detectability if known.effect == "current"]
+    assert sorted(told) == [("north", "east"), ("north", "east", "north_rate", "east_rate")]
+    for known in result.detectability:
+        others = [tag for tag, _ in known.twins]
+        assert len(set(others)) == len(others)
+
+
 @pytest.mark.parametrize("noise", ["white", pytest.param("autocorrelated", marks=pytest.mark.long)])
 def test_nothing_hidden_nothing_found(noise, tmp_path):
     case = null(5) if noise == "white" else null(5, AUTOCORRELATED)

@@ -19,7 +19,8 @@ TWINS = 3
 
 
 def detectability(bench: Workbench, step: Step) -> list[Detectability]:
-    """Detectability of every named hypothesis, from the first look."""
+    """Detectability of every named hypothesis, from the first look; but of those that are another one with more, of
+    which nothing shows before that one is known."""
     named = [s for s in step.scores if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
     cosine = angles(step.linear, [s.hypothesis for s in named])
     found = []
@@ -27,9 +28,14 @@ def detectability(bench: Workbench, step: Step) -> list[Detectability]:
         h = score.hypothesis
         needed = ENOUGH + len(h.names) * bench.price
         power = told_apart(step.linear, h.names)
+        if power == 0.0 and any(h.holds(other.hypothesis) for other in named):
+            continue
         sizes = math.sqrt(needed * score.inflation) / power if power > 0.0 else math.inf
         sizes = max(sizes, WORTH)
-        order = [j for j in np.argsort(-cosine[i]) if named[j].hypothesis.tag != h.tag][:TWINS]
+        nearest: dict[str, int] = {}  # of each other effect
+        for j in np.argsort(-cosine[i]):
+            nearest.setdefault(named[j].hypothesis.tag, int(j))
+        order = [j for tag, j in nearest.items() if tag != h.tag][:TWINS]
         found.append(
             Detectability(
                 h.tag,
