@@ -137,6 +137,7 @@ EFFECT = FlowEffect(
     told_as={("north", "east"): ("speed", "towards"), ("north_rate", "east_rate"): ("gain", "gaining")},
     sentence=_sentence,
     of_measured={"measured": "current", "turned": "current"},
+    refines=("carried",),
     besides=("north_rate", "east_rate", "carried"),
     rough_with=("north_rate", "east_rate"),
     stand_in=("north", "east", "north_rate", "east_rate"),

@@ -182,6 +182,7 @@ class Effect(Component):
     rough      whether its formula is right to no more than some per cent of itself, so that what it leaves says little
     rough_with parameters with which it is so, as a change that is never quite even
     akin       tags of effects that act much alike: where one fits best, the others are fitted too
+    refines    parameters that show only where others of the effect are known: a search looks for them beside these
     besides    parameters that a search looks for, and a fit with the effect tunes only where they are named
     form       parameters that say how far the force is off its formula, {parameter: one standard deviation about its
                null}; a search lets them go wherever it fits the effect, a fit tunes them only where they are named
@@ -213,6 +214,7 @@ class Effect(Component):
     rough: bool = False
     rough_with: tuple[str, ...] = ()
     akin: tuple[str, ...] = ()
+    refines: tuple[str, ...] = ()
     besides: tuple[str, ...] = ()
     form: Mapping[str, float] = field(default_factory=dict)
     absorbed: Mapping[str, str] = field(default_factory=dict)

@@ -23,7 +23,7 @@ class Terminal(io.StringIO):
 def test_a_profile_from_a_file(tmp_path):
     ended = run("profile", "new", "ship.toml", "--from", "suzaku", "--form", "fam", cwd=tmp_path)
     assert ended.code == 0, ended.err
-    assert "87 coefficients, 26 of them free in a fit" in ended.out
+    assert "88 coefficients, 26 of them free in a fit" in ended.out
     assert "approach at 6 kn with 106 rpm" in ended.out
     assert load_profile(tmp_path / "ship.toml").sections["hull"].component.tag == "derivatives"
     again = run("profile", "new", "ship.toml", "--from", "suzaku", cwd=tmp_path)

@@ -8,6 +8,7 @@ import pytest
 
 from mmgtune.diagnose.bench.hypotheses import known_causes, not_looked_for, of_runs
 from mmgtune.diagnose.searching.refitting import akin
+from mmgtune.diagnose.searching.search import _left
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials
@@ -99,3 +100,13 @@ def test_what_a_profile_has_no_section_for_is_said():
     assert not_looked_for(model, ()) == ["wind was not looked for: the profile has no [above_water]"]
     assert not_looked_for(model, ("current",)) == []
     assert not_looked_for(load_profile("vectwin_3m"), ()) == []  # another propeller is no section that is missing
+
+
+def test_what_refines_a_cause_is_looked_for_beside_it_only():
+    """Of a tide how it carries a ship along: no trial shows that before a tide is known."""
+    known = known_causes(load_profile("suzaku"), list(load_trials("suzaku").trials.values())[:2], DiagnoseOptions())
+    tide = next(one for one in known if one.variant == ("north", "east", "north_rate", "east_rate"))
+    (refining,) = (one for one in known if one.refines)
+    assert set(refining.variant) == {*tide.variant, "carried"}
+    for causes, there in (((), False), ((tide,), True), ((next(one for one in known if one.tag == "memory"),), False)):
+        assert (refining in _left(known, SimpleNamespace(causes=causes), ())) == there

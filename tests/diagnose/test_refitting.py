@@ -39,7 +39,7 @@ def first_look(hidden, effects):
     ship = with_effects(profile, hidden, "made") if hidden else profile
     made = [logged(trial, motion, rng) for trial, motion in zip(trials, simulate_trials(ship, trials), strict=True)]
     options = DiagnoseOptions(effects=effects)
-    known = known_causes(profile, made, options)
+    known = [one for one in known_causes(profile, made, options) if not one.refines]
     bench = make_workbench(profile, made, options, [name for one in known for name in one.names])
     point = base_fit(bench)
     linear = linearise(bench, point, [name for one in known for name in one.names])

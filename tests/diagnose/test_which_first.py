@@ -214,7 +214,9 @@ def test_what_chance_may_bring_is_no_doubt_where_a_plainer_form_of_it_is_told(fo
 def test_the_first_of_a_sum_is_told_in_its_plainest_form(monkeypatch, plain, told):
     """Of a hull of another form "the current changed within a run by up to 0.7 m/s in ten minutes": it was steady."""
     steady, changing = (
-        Hypothesis(find_effect("current"), names) for names in find_effect("current").variants if "north" in names
+        Hypothesis(find_effect("current"), names)
+        for names in find_effect("current").variants
+        if "north" in names and "carried" not in names
     )
     of_each = replace(changing, by="trial", groups=("trial:a", "trial:b", "trial:c"))
     falls = {steady.names: plain, changing.names: 9_500.0 if told == 4 else plain}

@@ -19,8 +19,7 @@ TWINS = 3
 
 
 def detectability(bench: Workbench, step: Step) -> list[Detectability]:
-    """Detectability of every named hypothesis, from the first look; but of those that are another one with more, of
-    which nothing shows before that one is known."""
+    """Detectability of every named hypothesis, from the first look."""
     named = [s for s in step.scores if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
     cosine = angles(step.linear, [s.hypothesis for s in named])
     found = []
@@ -28,8 +27,6 @@ def detectability(bench: Workbench, step: Step) -> list[Detectability]:
         h = score.hypothesis
         needed = ENOUGH + len(h.names) * bench.price
         power = told_apart(step.linear, h.names)
-        if power == 0.0 and any(h.holds(other.hypothesis) for other in named):
-            continue
         sizes = math.sqrt(needed * score.inflation) / power if power > 0.0 else math.inf
         sizes = max(sizes, WORTH)
         nearest: dict[str, int] = {}  # of each other effect

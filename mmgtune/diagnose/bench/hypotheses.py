@@ -69,6 +69,11 @@ class Hypothesis:
         """Whether what it leaves says little: its formula, or a change that it takes for even, is not that exact."""
         return self.effect.rough or bool(set(self.effect.rough_with) & set(self.variant))
 
+    @property
+    def refines(self) -> bool:
+        """Whether it is of what shows only beside a part of it that is known."""
+        return bool(set(self.effect.refines) & set(self.variant))
+
     def holds(self, other: Hypothesis) -> bool:
         """Whether the other is a special case of this: fewer parameters, or the same for more runs."""
         finer = self.by == "trial" or self.by == other.by or not other.by

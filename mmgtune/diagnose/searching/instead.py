@@ -109,7 +109,7 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     fall = as_it_is.chi2 - tuned.chi2
     if as_it_is.chi2 < MISSES * bench.problem.n_residuals or fall <= 0.0:
         return None
-    asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many)]
+    asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many or one.refines)]
     linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases], roughly=True)
     ranked, least = scores(linear, asked), min(CLOSE * tuned.chi2, as_it_is.chi2 - NEARLY * fall)
     fits: list[Refit] = []

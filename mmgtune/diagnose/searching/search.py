@@ -91,7 +91,7 @@ def search(
     at_end = {name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0}
     hypotheses = [*hypotheses, *(one for one in in_place if set(one.instead) <= at_end)]
     found = Found(base, base)
-    left = list(hypotheses)
+    left = _left(hypotheses, found, ())
     dropped: list[Hypothesis] = []
     once: list[Hypothesis] = []
     while hypotheses and not bench.stop():
@@ -185,7 +185,8 @@ def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
 
 def _left(hypotheses: Sequence[Hypothesis], found: Found, dropped: Sequence[Hypothesis]) -> list[Hypothesis]:
     """Hypotheses that may still be looked at beside the causes found."""
-    return [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
+    open_ones = [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
+    return [h for h in open_ones if not h.refines or any(h.holds(cause) for cause in found.causes)]
 
 
 def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
