@@ -91,19 +91,24 @@ def problems_in(facts: Mapping[str, Any], where: str, columns: Sequence[str]) ->
         fix = f"write a list of any of {', '.join(MOTION)}, or leave it out"
         problems.append(Problem(f"'derived' is {brief(derived)}, not a list of motion columns", where, fix=fix))
     if "antenna" in facts and antenna_of(facts) is None:
-        fix = 'write [ahead, to starboard] of midship in m, "antenna": [-25.0, 0.0], or leave it out'
-        problems.append(Problem(f"'antenna' is {brief(facts['antenna'])}, no place on a ship", where, fix=fix))
+        problems.append(no_place(facts["antenna"], where))
     return problems + noise_problems(facts.get("noise", {}), where, columns)
 
 
 def antenna_of(facts: Mapping[str, Any]) -> tuple[float, float] | None:
     """Where positions were measured [m], forward and to starboard of midship; None where no place on a ship is said."""
     place = facts.get("antenna")
-    if not isinstance(place, list) or len(place) != 2:
+    if not isinstance(place, list | tuple) or len(place) != 2:
         return None
-    if not all(isinstance(one, int | float) and not isinstance(one, bool) and abs(one) < LONGEST for one in place):
+    if not all(is_real(one) and abs(as_float(one)) < LONGEST for one in place):
         return None
-    return float(place[0]), float(place[1])
+    return as_float(place[0]), as_float(place[1])
+
+
+def no_place(place: object, where: str) -> Problem:
+    """The problem of what is no place on a ship."""
+    fix = 'write [ahead, to starboard] of midship in m, "antenna": [-25.0, 0.0], or leave it out'
+    return Problem(f"'antenna' is {brief(place)}, no place on a ship", where, fix=fix)
 
 
 def nameless(id: object) -> bool:

@@ -15,7 +15,7 @@ from ..errors import Problem, TrialError
 from ..inputs import INPUTS, meant_by
 from ..phrases import counted
 from .headings import going_on
-from .metadata import as_json, noise_problems
+from .metadata import antenna_of, as_json, no_place, noise_problems
 from .schema import ATTRIBUTES, CHANNELS
 
 
@@ -45,8 +45,8 @@ class Trial(Plotted):
                the heading logged; None where they were not
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
-    Raises TrialError for arrays without numbers or of other lengths than ``t``, for ``extra`` that repeats a field, and
-    for ``noise`` that is none.
+    Raises TrialError for arrays without numbers or of other lengths than ``t``, for ``extra`` that repeats a field, for
+    ``noise`` that is none, and for an ``antenna`` that is on no ship.
     """
 
     id: str
@@ -85,6 +85,11 @@ class Trial(Plotted):
         object.__setattr__(self, "_motion", motion)
         for name, column in zip(CHANNELS, motion.T, strict=True):  # one copy of each
             object.__setattr__(self, name, column)
+        if self.antenna is not None:
+            place = antenna_of({"antenna": self.antenna})
+            if place is None:
+                raise TrialError(no_place(self.antenna, "antenna"))
+            object.__setattr__(self, "antenna", place)
         if problems := noise_problems(as_json({"noise": self.noise})["noise"], "noise", tuple(self.extra)):
             raise TrialError(*problems)
         repeated = sorted(set(self.extra) & {*ATTRIBUTES, *ATTRIBUTES.values()})
