@@ -91,11 +91,9 @@ def _sentence(v: Mapping[str, str]) -> str:
     if "gaining" not in v:
         return f"{steady}, which hardly changed during a run: by {v['gain']}"
     grew = f"{steady} at the beginning of a run, which gained {v['gain']} towards {v['gaining']}"
-    return (
-        f"{grew} and carried the ship along by {v['carried']} of that, her drag alone by the rest"
-        if "carried" in v
-        else grew
-    )
+    if "carried" not in v:
+        return grew
+    return f"{grew} and carried the ship along by {v['carried']} of that, her drag alone by the rest"
 
 
 EFFECT = FlowEffect(

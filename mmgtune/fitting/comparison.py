@@ -116,6 +116,15 @@ class ComparedTrials(tuple[TrialComparison, ...], Plotted):
         return f"ComparedTrials({', '.join([counted(len(self), 'trial'), *of])})"
 
 
+def records_at(
+    problem: FitProblem, trials: Sequence[Trial], unit: FloatArray, objective: Objective | None = None
+) -> tuple[TrialRecord, ...]:
+    """Every trial simulated with the coefficients at a position (n_targets,) of the unit cube; arguments as for
+    ``compare``, the paper's objective where None."""
+    offsets = None if problem.sigma is None else fit_offsets(problem, unit)
+    return tuple(records(problem.predictor(unit[:, None]), trials, objective, offsets=offsets))
+
+
 def compare(
     problem: FitProblem,
     trials: Sequence[Trial],
@@ -129,10 +138,8 @@ def compare(
     problem    over all of ``trials``, in their order; where it estimates initial states, each trial gets its own
     objective  what J counts
     """
-    found: dict[str, tuple[TrialRecord, ...]] = {}
-    for which, unit in (("before", before), ("after", after)):
-        offsets = None if problem.sigma is None else fit_offsets(problem, unit)
-        found[which] = tuple(records(problem.predictor(unit[:, None]), trials, objective, offsets=offsets))
+    points = {"before": before, "after": after}
+    found = {which: records_at(problem, trials, unit, objective) for which, unit in points.items()}
     return [
         TrialComparison(trial, roles[trial.id], {which: of[i] for which, of in found.items()})
         for i, trial in enumerate(trials)

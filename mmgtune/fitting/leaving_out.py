@@ -17,7 +17,7 @@ from ..circumstances import notes_on
 from ..displayed import Plotted
 from ..documents import finite, finite_values
 from ..errors import OptionError, Problem, must_be_a
-from ..evaluation import TrialRecord, evaluate
+from ..evaluation import TrialRecord
 from ..files import kept_in
 from ..hooks import Hooks
 from ..inputs import INPUTS
@@ -39,11 +39,11 @@ from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, another_ship, oddities
 from ..writing_results import place_for, write_record
 from .amounts import telling
-from .comparison import ComparedTrials, TrialComparison
+from .comparison import ComparedTrials, TrialComparison, records_at
 from .extending import held_words, settled, tune_trials
 from .folder import motions_table
 from .journal import finished, journalled
-from .least_squares import fit_offsets, solve
+from .least_squares import solve
 from .one_sided import coverage_notes
 from .optimum import edge_ridge, random_starts
 from .problem import FitProblem
@@ -386,8 +386,7 @@ class _ToAllRuns:
         if not series:
             return {}
         problem = make_problem(self.profile, self.trials, self.options, [one.id for one in series])
-        offsets = None if problem.sigma is None else fit_offsets(problem, unit)
-        return {one.trial.id: one for one in evaluate(problem.predictor(unit[:, None]), series, offsets=offsets)}
+        return {one.trial.id: one for one in records_at(problem, series, unit)}
 
     def without(self, out: Sequence[str], others: Sequence[str], hooks: Hooks) -> _Part | None:
         """Fit to the other runs and score those left out; None where it was stopped before its end."""

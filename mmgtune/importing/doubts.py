@@ -101,13 +101,11 @@ def gyro_drift(trial: Trial, where: str) -> list[Finding]:
     """A heading that leaves the integral of the yaw rate steadily, in time or as she turns."""
     turned = turning(trial.columns)
     off = turned.heading - turned.yaw
-    if len(off) < FEWEST:
+    if len(off) < FEWEST or turned.opposed:  # the check of the trial tells that
         return []
     t = np.linspace(0.0, trial.duration, len(off))
     (slope, in_time), (factor, by_turning) = (_line(one, off) for one in (t, turned.yaw))
     drift = slope * trial.duration
-    if turned.opposed:  # which the check of the trial tells
-        return []
     if max(in_time, by_turning) < STEADY or max(abs(drift), float(np.ptp(off))) < DRIFTS:
         return []
     for ratio, name, why in OTHER_UNITS:

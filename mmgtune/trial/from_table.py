@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, brief, kind_of
 from ..units import canonical, name_and_unit
-from .metadata import antenna_of, as_json, nameless, problems_in, without_id
+from .metadata import as_json, nameless, problems_in, without_id
 from .model import Trial, fields_of
 from .raw_logs import TABLE_TO_LOG, table_instead
 from .schema import REQUIRED, known_column
@@ -72,8 +72,6 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     if problems:
         raise TrialError(*problems)
     named = {"ship": "", "manoeuvre": "", "source": "", **facts}
-    if "antenna" in facts:
-        named["antenna"] = antenna_of(as_json(facts))
     return Trial(id=id, **named, **fields_of(columns), ignored=tuple(ignored))
 
 

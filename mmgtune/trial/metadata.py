@@ -52,8 +52,6 @@ def as_json(facts: Mapping[str, Any]) -> dict[str, Any]:
         made["noise"] = {name: as_float(one) if is_real(one) else one for name, one in noise.items()}
     if isinstance(derived, tuple):
         made["derived"] = list(derived)
-    if isinstance(antenna := facts.get("antenna"), tuple):
-        made["antenna"] = [as_float(one) if is_real(one) else one for one in antenna]
     return made
 
 

@@ -225,7 +225,7 @@ def _summed(answer: Answer) -> str:
 def _of_the_unknown(answer: Answer) -> Said:
     """That something is wrong, the best that is known of it, and how much is left."""
     tags = " + ".join(dict.fromkeys(cause.tag for cause in answer.causes))
-    if answer.contradicted and not answer.candidates:
+    if answer.looked_for_none:
         left = _of_noise(answer.leftover.unknown, "measurements")
         return Said(f"No cause was looked for: with the logs as they are, the re-tuned model leaves {left}.")
     if answer.unclear and answer.tells_a_part:

@@ -98,8 +98,12 @@ class Answer(Belief, Plotted):
     def record(self) -> Record | None:
         """How often such an answer was right in the study; None of a search that was stopped, of voyages, and where
         logs are to be put right before anything is looked for."""
-        looked = not (self.contradicted and not self.candidates)
-        return record_of(self.kind) if self.kind and looked and not self.between else None
+        return record_of(self.kind) if self.kind and not (self.between or self.looked_for_none) else None
+
+    @property
+    def looked_for_none(self) -> bool:
+        """Whether no cause was looked for, as logs or profile are to be put right first."""
+        return bool(self.contradicted) and not self.candidates
 
     @property
     def between(self) -> tuple[Difference, ...]:

@@ -132,10 +132,10 @@ def _second_needed(find: Finder, axes: str, column: int, unit: str, minus: bool)
             sign = -1.0 if minus else 1.0
             off = target[both] - sign * logged[both]
             size = _size(target[both])
-            direct.append(float(np.sqrt(np.mean(off**2))) / size)
+            direct.append(_size(off) / size)
             together.append(sign * float(target[both] @ logged[both]) / size / _size(logged[both]) / both.sum())
             off = off - float(rate @ off) / max(float(rate @ rate), 1e-300) * rate
-            told.append(float(np.sqrt(np.mean(off**2)) / max(float(np.sqrt(np.mean(without**2))), 1e-300)))
+            told.append(_size(off) / _size(without))
     if not told:
         return False
     named = find.said[column] == "v"
@@ -144,7 +144,7 @@ def _second_needed(find: Finder, axes: str, column: int, unit: str, minus: bool)
 
 
 def _size(values: FloatArray) -> float:
-    """Root of the mean square."""
+    """Root of the mean square, more than 0."""
     return max(float(np.sqrt(np.mean(values**2))), 1e-300)
 
 

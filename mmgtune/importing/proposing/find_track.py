@@ -213,6 +213,7 @@ def _called_heading(find: Finder, track: Track) -> list[str]:
 def _doubt_mirror_image(find: Finder, scores: Mapping[Track, float], track: Track) -> None:
     """Say where neither motion nor names tell a track from its mirror image, whose turns are to the other side."""
     mirrored = max((v for one, v in scores.items() if one.left != track.left and one.psi == track.psi), default=0.0)
+    x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
     if (
         not track.geographic
         and not {find.said[track.x], find.said[track.y]} & {"x", "y"}
@@ -220,21 +221,18 @@ def _doubt_mirror_image(find: Finder, scores: Mapping[Track, float], track: Trac
     ):
         find.notes.append("no motion shows its mirror image: y is taken to the east and the heading clockwise")
     elif track.geographic and track.left:
-        psi, y = find.shown(track.psi), find.shown(track.y)
         find.notes.append(
             f"{psi} counts counterclockwise if {y} is to the east, as no compass does: where {y} is to the west, give "
             f'it positive = "west", {psi} positive = "clockwise", and exchange port and starboard under r, v and the '
             "rudder"
         )
     elif _as_exchanged(find, track):
-        x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
         find.notes.append(
             f"{psi} counts counterclockwise from east if {x} is to the north, as no compass does: where {x} is to the "
             f'east and {y} to the north, exchange the columns of x and y, give {psi} positive = "clockwise" and no '
             "zero, and exchange port and starboard under v, r and the rudder"
         )
     elif _as_robots_have_them(find, track):
-        x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
         find.notes.append(
             f"no motion shows its mirror image, and names do not tell: {x} is taken to the north, {y} to the east and "
             f"{psi} clockwise. If {x} is to the east, {y} to the north and {psi} to port from east, as of robots, "
