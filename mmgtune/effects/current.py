@@ -118,7 +118,7 @@ EFFECT = FlowEffect(
             "share of what the water gains that a ship gains with it, her drag apart",
             null=1.0,
             low=AT_LEAST_0,
-            high=1.0,
+            high=2.0,
             bounds=lambda _: (0.0, 1.0),
             typical=lambda _: 0.3,
             bounds_source="from a ship that only drag takes along to one that goes with the water, as theory has it",

@@ -106,7 +106,8 @@ def antenna_of(facts: Mapping[str, Any]) -> tuple[float, float] | None:
 def no_place(place: object, where: str) -> Problem:
     """The problem of what is no place on a ship."""
     fix = 'write [ahead, to starboard] of midship in m, "antenna": [-25.0, 0.0], or leave it out'
-    return Problem(f"'antenna' is {brief(place)}, no place on a ship", where, fix=fix)
+    why = f"it is two numbers, each of less than {LONGEST:.0f} m from midship"
+    return Problem(f"'antenna' is {brief(place)}, no place on a ship", where, why, fix)
 
 
 def nameless(id: object) -> bool:

@@ -10,7 +10,7 @@ from mmgtune.diagnose.bench.hypotheses import known_causes, not_looked_for, of_r
 from mmgtune.diagnose.searching.refitting import akin
 from mmgtune.diagnose.searching.search import _left
 from mmgtune.options import DiagnoseOptions
-from mmgtune.profile import load_profile, with_effects
+from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.trial import load_trials
 
 MEASURED = {
@@ -110,3 +110,9 @@ def test_what_refines_a_cause_is_looked_for_beside_it_only():
     assert set(refining.variant) == {*tide.variant, "carried"}
     for causes, there in (((), False), ((tide,), True), ((next(one for one in known if one.tag == "memory"),), False)):
         assert (refining in _left(known, SimpleNamespace(causes=causes), ())) == there
+
+
+def test_a_current_that_carries_ships_along_as_theory_has_it_can_be_stated():
+    """Its share of 1 was refused as too large."""
+    stated = with_effects(load_profile("suzaku"), {"current": {"north": 0.1, "carried": 1.0}}, "a test")
+    assert parse_profile(stated.text, "stated.toml").value("effects.current.carried") == 1.0

@@ -43,6 +43,7 @@ def test_everything_wrong_at_once():
         ("[columns]", '[columns.wind_dir]\ncolumn = "w"\nunit = "deg"\n[columns]', "comes from or goes to?"),
         ("[columns]", '[antenna]\nx = "3 m"\ny = "0 m"\n[columns]', "of midship or of the antenna?"),
         ("[columns]", '[antenna]\nx = "3 m"\n[columns]', "'antenna.y' is missing"),
+        ("[columns]", '[antenna]\nx = "-5000 m"\ny = "0 m"\n[columns]', "the antenna is 5000 m from midship"),
         ("[columns]", "[position]\norigin = [100.0, 3.0]\n[columns]", "[latitude, longitude]"),
         ("[columns]", '[log]\nencoding = "utf-9"\n[columns]', "unknown encoding"),
         ("[columns]", '[log]\nformat = "docx"\n[columns]', "'csv', 'parquet', 'nmea'"),

@@ -15,6 +15,7 @@ from ...errors import LogError, Problem, among, brief, closest, reason
 from ...phrases import counted
 from ...resources import import_map_names, import_maps, must_be_name
 from ...toml_reading import TomlReader, finite, named, toml_of
+from ...trial.metadata import antenna_of
 from ...trial.schema import COLUMNS, SOURCES, impossible, known_column
 from ..cells.degrees import DDMM
 from ..cells.position_parts import HEMISPHERES, PARTS
@@ -462,7 +463,13 @@ class _Reader(TomlReader):
     def antenna(self) -> tuple[float, float] | None:
         if "antenna" not in self.data:
             return None
-        return self.place("antenna", self.table("antenna"))
+        place = self.place("antenna", self.table("antenna"))
+        if place is None or antenna_of({"antenna": place}) is not None:
+            return place
+        fix = "give forward and to starboard of midship, with the unit they are in"
+        what = f"the antenna is {max(map(abs, place)):.4g} m from midship"
+        self.problem(what, "antenna", why="no ship is as long", fix=fix)
+        return None
 
     def point(self) -> tuple[str | None, tuple[float, float] | None]:
         table = self.table("velocity")
