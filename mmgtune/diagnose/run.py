@@ -225,15 +225,19 @@ def _looked_at(
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
     asked = [*known, *in_place]
 
-    def answered(
-        hypotheses: Sequence[Hypothesis], left_out: Sequence[Refit], earlier: Found | None = None
-    ) -> tuple[Diagnosis, Found]:
-        """The answer of a search among some of the hypotheses; an effect left out may do as well as what is found.
+    def searched(
+        hypotheses: Sequence[Hypothesis], left_out: Sequence[Refit] = (), earlier: Found | None = None
+    ) -> Found:
+        """What a search finds among some of the hypotheses; an effect left out may do as well as what is found.
 
         earlier  what was found among all: its first look is taken up again
         """
         found = search(bench, hypotheses, in_place, hooks.on_phase, earlier.steps[0] if earlier else None)
         found.left_out = list(left_out)
+        return found
+
+    def answered(found: Found) -> tuple[Diagnosis, Found]:
+        """The answer of what a search found, and the causes it is about."""
         hooks.on_phase("measuring the gain")
         before = leftover(bench, found.base)
         unseen = Unseen(bench, [found.held.evenly(trial) for trial in test] if found.held else test)
@@ -250,7 +254,7 @@ def _looked_at(
         )
         return judge.answer(found, brought)
 
-    result, found = _of_the_better_beginning(bench, answered, [*known, *differing_by_run], hooks)
+    result, found = _of_the_better_beginning(bench, searched, answered, [*known, *differing_by_run], hooks)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     told = capital(jumps_in_words(jumped))
@@ -291,18 +295,19 @@ def _looked_at(
 
 def _of_the_better_beginning(
     bench: Workbench,
-    answered: Callable[..., tuple[Diagnosis, Found]],
+    searched: Callable[..., Found],
+    answered: Callable[[Found], tuple[Diagnosis, Found]],
     hypotheses: Sequence[Hypothesis],
     hooks: Hooks,
 ) -> tuple[Diagnosis, Found]:
     """The answer of a search; where that is unexplained or has a cause beside one that acts like it, and another may
     have been the one to begin with, of one without the first, if its causes are believed and fit better.  Where it has
     values of each run to which a form that is the same in all runs may have led, of one without such values."""
-    result, found = answered(hypotheses, ())
+    result, found = answered(searched(hypotheses))
     if not hooks.stop() and (tag := of_one_form(result) or misleading(result)):
         hooks.on_phase(f"looking again without {tag} of each run")
         known = bench.known()
-        other, others = answered([one for one in hypotheses if not one.by], (), found)
+        other, others = answered(searched([one for one in hypotheses if not one.by], (), found))
         if tells_as_well(other, result):
             return other, others
         bench.put_back(known)
@@ -314,11 +319,13 @@ def _of_the_better_beginning(
     first = begun[0].hypothesis.tag
     hooks.on_phase(f"looking again without {first}")
     known = bench.known()
-    other, others = answered([one for one in hypotheses if one.tag != first], begun, found)
-    if other.names_causes and _fits_better(bench, others, found):
-        return other, others
+    others = searched([one for one in hypotheses if one.tag != first], begun, found)
+    if _fits_better(bench, others, found):
+        other, others = answered(others)
+        if other.names_causes and _fits_better(bench, others, found):
+            return other, others
     bench.put_back(known)
-    return replace(result, interrupted=other.interrupted), found
+    return replace(result, interrupted=hooks.stop()), found
 
 
 def _fits_better(bench: Workbench, one: Found, other: Found) -> bool:

@@ -122,14 +122,21 @@ def test_the_answer_of_the_second_search_is_told_where_it_is_believed_and_fits_b
     monkeypatch.setattr(run, "against_its_kin", lambda found: first.kin)
     asked = []
 
-    def answered(hypotheses, left_out, earlier=None):
+    def searched(hypotheses, left_out=(), earlier=None):
         asked.append([one.tag for one in hypotheses])
         bench.knows = len(asked)
         assert earlier == (None if len(asked) == 1 else "found first")
-        return (first, other)[len(asked) - 1], "found first"
+        return "found first" if len(asked) == 1 else "found then"
 
+    def answered(found):
+        judged.append(found)
+        return (first, other)[len(asked) - 1], found
+
+    judged = []
     hypotheses = [SimpleNamespace(tag=tag) for tag in ("wind", "current", "wind")]
     bench = Knowing()
-    assert run._of_the_better_beginning(bench, answered, hypotheses, Hooks())[0] == told
+    hooks = Hooks(stop=lambda: bool(other and other.interrupted and len(asked) > 1))
+    assert run._of_the_better_beginning(bench, searched, answered, hypotheses, hooks)[0] == told
     assert asked[1:] == ([["current"]] if other else [])
+    assert judged[1:] == (["found then"] if other and fits else [])  # not in vain
     assert bench.knows == (2 if told == other else 1)  # noise and spreads of what is answered

@@ -77,11 +77,14 @@ def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken
     first, second = answer(candidates=[form(0.2)]), answer(after, runs=False)
     asked = []
 
-    def answered(hypotheses, left_out, earlier=None):
+    def searched(hypotheses, left_out=(), earlier=None):
         asked.append([one.by for one in hypotheses])
         bench.knows = len(asked)
         assert earlier == (None if len(asked) == 1 else "first")
-        return (first, "first") if len(asked) == 1 else (second, "second")
+        return "first" if len(asked) == 1 else "second"
+
+    def answered(found):
+        return (first if found == "first" else second), found
 
     for one in (first, second):
         one.verdict, one.interrupted = "found", False
@@ -91,7 +94,7 @@ def test_the_second_search_looks_for_no_values_of_runs(monkeypatch, after, taken
     hooks = SimpleNamespace(stop=lambda: False, on_phase=said.append)
     monkeypatch.setattr(run, "replace", lambda one, **_: one)
     monkeypatch.setattr(run, "against_its_kin", lambda _: False)
-    found = run._of_the_better_beginning(bench, answered, known, hooks)
+    found = run._of_the_better_beginning(bench, searched, answered, known, hooks)
     assert found == ((second, "second") if taken else (first, "first"))
     assert asked == [["", "trial", "group"], [""]]
     assert bench.knows == (2 if taken else 1)  # noise and spreads of what is answered

@@ -17,7 +17,7 @@ from ...objective import Objective, cases_of, make_objective
 from ...trial import Coverage, Trial
 from ..bench.runs import labels_of
 from ..bench.workbench import Point, Workbench, make_workbench
-from ..searching.base_fit import unnoticed
+from ..searching.base_fit import hardly_noticed
 from .elsewhere import estimated_there, first_part
 
 
@@ -53,10 +53,11 @@ class Unseen:
 class _Without:
     """The workbench of all runs but one.
 
-    rest   that workbench; keep: its trials, by number in the whole one
+    whole  the workbench of all runs; rest: that of the others; keep: its trials, by number in the whole one
     known  points and their refits, by identity of the point: causes are set aside one by one, and points recur
     """
 
+    whole: Workbench
     rest: Workbench
     keep: list[int]
     known: dict[int, tuple[Point, Point]] = field(default_factory=dict)
@@ -67,9 +68,9 @@ class _Without:
         keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
         names = [name for name in bench.box.names if name not in bench.tuned_alone]
         rest = make_workbench(bench.model.profile, [bench.trials[i] for i in keep], bench.options, names, coverage)
-        rest.targets, rest.believed, rest.stop = bench.targets, bench.believed, bench.stop
+        rest.targets, rest.believed, rest.slopes, rest.stop = bench.targets, bench.believed, bench.slopes, bench.stop
         rest.know(replace(bench.noise, cases=rest.problem.cases))
-        return cls(rest, keep)
+        return cls(bench, rest, keep)
 
     def refitted(self, points: Sequence[Point]) -> list[Point]:
         """Points refitted on the trials that are left, without values of runs that are not among them."""
@@ -85,7 +86,7 @@ class _Without:
                 start,
                 point.offsets[self.keep],
                 integrator=point.integrator,
-                tolerance=unnoticed(self.rest, point.chi2),
+                tolerance=hardly_noticed(self.whole, point.chi2),
                 spreads=point.spreads,
             )
             self.known[id(point)] = point, refitted

@@ -35,6 +35,9 @@ OF_EXCESS = 1e-4
 """Fall that counts as none, as a share of chi-squared beyond the noise: where much is left, its last digits decide
 nothing."""
 
+HARDLY = 1e-3
+"""The same where fits are compared with others that differ by far more."""
+
 
 def base_fit(bench: Workbench) -> Point:
     """The targets re-tuned without any effect: from several starts, in larger steps of the integration at first.
@@ -61,6 +64,11 @@ def base_fit(bench: Workbench) -> Point:
         if better < 1e-3 * point.chi2:
             break
     return point
+
+
+def hardly_noticed(bench: Workbench, chi2: float) -> float:
+    """Fall of chi-squared that counts as none where fits are only compared with others, or judged by other trials."""
+    return max(TOLERANCE, HARDLY * (chi2 - bench.problem.n_residuals))
 
 
 def unnoticed(bench: Workbench, chi2: float, least: float = TOLERANCE) -> float:

@@ -15,11 +15,11 @@ from ...fitting.box import base_of
 from ...fitting.journal import side_by_side
 from ..bench.hypotheses import Hypothesis
 from ..bench.runs import spread_key
-from ..bench.workbench import TOLERANCE, Point, Workbench
+from ..bench.workbench import Point, Workbench
 from ..signatures.beside import free_with, kept_free, origin
 from ..signatures.linear import Linear, far_from_null, inwards, typical
 from ..signatures.screening import Score, told_by
-from .base_fit import unnoticed
+from .base_fit import hardly_noticed, unnoticed
 
 STRONG = 1.2
 """Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
@@ -242,7 +242,6 @@ class Refitter:
     def steps(self, point: Point, score: Score, starts: FloatArray, iterations: int) -> list[Point]:
         """A number of steps of fits with a hypothesis, from starts at a point and its offsets."""
         hypothesis = score.hypothesis
-        excess = max(point.chi2 - self.bench.problem.n_residuals, 0.0)
         return self.known.note(
             hypothesis,
             self.bench.refits(
@@ -250,7 +249,7 @@ class Refitter:
                 starts,
                 point.offsets,
                 max_iterations=iterations,
-                tolerance=max(TOLERANCE, 1e-3 * excess),
+                tolerance=hardly_noticed(self.bench, point.chi2),
                 spreads=self._spreads(point, hypothesis, max(score.spread, 1.0 if self.strong else LEAST_SPREAD)),
                 hopeless=self.hopeless,
             ),
