@@ -1167,7 +1167,15 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     assert unlike not in saying.said(seen).why  # logs first
     first, seen.contradicted = seen.contradicted, ""
     assert unlike in saying.said(seen).why
-    assert saying.said(seen).headline.startswith("This ship may be unlike her profile in many ways, which ")
+    assert saying.said(seen).headline.startswith("Something is wrong that this program cannot name.")
+    assert f"{unlike}: the ship may also be unlike her profile" in saying.said(seen).why  # one cause removes 99 %
+    for seen.ends, seen.explained_share in (
+        (AtEnds(("hull.Y_v",) * 5, ("hull.Y_v",) * 5, 10), 0.99),
+        (AtEnds(("hull.Y_v",) * 5, (), 10), 0.8),
+    ):
+        assert saying.said(seen).headline.startswith("This ship may be unlike her profile in many ways, which ")
+        assert f"{unlike}." in saying.said(seen).why
+    seen.explained_share = 0.99
     seen.contradicted = first
     said = saying.said(seen)
     assert said.headline == seen.contradicted

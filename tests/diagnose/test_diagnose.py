@@ -207,6 +207,24 @@ def test_a_log_of_the_water_that_is_off_is_told_where_the_profile_takes_it_for_r
     assert said in result.sentence()
 
 
+def test_a_vane_that_is_off_is_told_where_the_profile_has_no_wind(tmp_path):
+    """Turning a wind of nothing does nothing, so its score was none and it was never fitted: waves of each run stood
+    for it."""
+    speed, towards, off = 14.0, np.radians(120.0), np.radians(25.0)
+    blows = {"wind": {"speed": speed, "direction": towards + np.pi}}
+    trials = load_trials(files(replace(null(3), effects=blows), tmp_path))
+    logs = {"wind_speed": speed, "wind_dir": towards + np.pi + off}
+    made = {
+        one.id: replace(one, extra={name: np.full(one.n_samples, value) for name, value in logs.items()})
+        for one in trials.trials.values()
+    }
+    asked = DiagnoseOptions(effects=("wind", "wave-drift", "current"))
+    result = diagnose("suzaku", replace(trials, trials=made), asked)
+    assert [cause.tag for cause in result.causes] == ["wind"], result.sentence()
+    turned = result.causes[0].estimates["effects.wind.turned"]
+    assert turned.low < off < turned.high
+
+
 @pytest.mark.long
 def test_what_the_profile_has_and_the_ship_has_no_more_is_told(tmp_path):
     ship = with_effects(load_profile("suzaku"), {"rudder-offset": {"angle": np.radians(1.0)}}, "last year's trials")

@@ -69,7 +69,7 @@ def test_what_acts_much_like_the_best_is_fitted_too(trials):
 
     def beside(best, *others):
         fitted = [(by_tag[tag], SimpleNamespace(chi2=2.0 + k)) for k, tag in enumerate((best, *others))]
-        return [score.hypothesis.tag for score in akin(order, fitted)]
+        return [score.hypothesis.tag for score in akin(order, fitted, 100.0)]
 
     assert beside("wave-drift", "current") == ["wind"]
     assert beside("wind") == ["wave-drift"]
@@ -77,7 +77,24 @@ def test_what_acts_much_like_the_best_is_fitted_too(trials):
     assert beside("current", "wave-drift") == []
     by_tag["wind"].power = 0.0
     assert beside("wave-drift") == []
-    assert akin(order, []) == []
+    assert akin(order, [], 100.0) == []
+
+
+def test_a_form_with_more_parameters_is_fitted_beside_one_that_explains_much(trials):
+    known = known_causes(load_profile("suzaku"), trials, DiagnoseOptions())
+    order = [SimpleNamespace(hypothesis=one, power=0.0) for one in known]
+
+    def beside(left):
+        fitted = [
+            (score, SimpleNamespace(chi2=left.get(score.hypothesis.label)))
+            for score in order
+            if score.hypothesis.label in left
+        ]
+        return [score.hypothesis.label for score in akin(order, fitted, 100.0)]
+
+    assert beside({"flap": 10.0, "rudder-gain (factor)": 40.0}) == ["rudder-gain (factor, curve)"]
+    assert beside({"flap": 10.0, "rudder-gain (factor)": 60.0}) == []
+    assert beside({"flap": 10.0, "rudder-gain (factor)": 40.0, "rudder-gain (factor, curve)": 30.0}) == []
 
 
 def test_what_the_profile_has_already_is_looked_for_from_there(trials):
@@ -116,3 +133,20 @@ def test_a_current_that_carries_ships_along_as_theory_has_it_can_be_stated():
     """Its share of 1 was refused as too large."""
     stated = with_effects(load_profile("suzaku"), {"current": {"north": 0.1, "carried": 1.0}}, "a test")
     assert parse_profile(stated.text, "stated.toml").value("effects.current.carried") == 1.0
+
+
+def test_the_other_part_of_a_form_is_looked_for_with_the_part_that_is_known(trials):
+    """A vane that is off beside the wind it measures was looked for as a third cause, of which nothing was left: a
+    traceback."""
+    n = trials[0].n_samples
+    seen = replace(trials[0], extra={name: np.full(n, 0.5) for name in MEASURED["wind"]})
+    known = known_causes(load_profile("suzaku"), [seen], DiagnoseOptions(effects=("wind", "steering-lag")))
+
+    def left(*variant):
+        causes = [one for one in known if one.variant == variant]
+        return [one.variant for one in _left(known, SimpleNamespace(causes=causes), ()) if one.tag == causes[0].tag]
+
+    assert left("measured") == [("measured", "turned")]
+    assert left("measured", "turned") == []
+    assert ("time_constant", "rate_limit") in left("rate_limit")
+    assert ("time_constant",) not in left("rate_limit")

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...phrases import LARGE, capital, figures, in_percent, listed, small
 from ...units import DEG
 from ..bench.of_hull import AS_WELL
-from ..causes.belief import TOLD
+from ..causes.belief import MOSTLY, TOLD
 from ..evidence.leftover import change_in_words, in_words
 from ..evidence.misread import RUDDER
 from ..evidence.misread import in_words as misread_in_words
@@ -70,9 +70,11 @@ def said(answer: Answer) -> Said:
         pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
         first, *why = [*pieces, unknown.why]
         if answer.ends and not (answer.contradicted or answer.of_a_sensor):
-            unlike = answer.ends.first
+            unlike, ends = answer.ends.first, answer.ends.why(answer.unclear)
+            if unlike and answer.tells_a_part and answer.explained_share >= MOSTLY and not answer.ends.unlike:
+                unlike, ends = "", answer.ends.aside  # what few causes do is hardly of many coefficients
             first = unlike if unlike and first == _CANNOT_NAME else _joined(first, unlike)
-            why.append(answer.ends.why(answer.unclear))
+            why.append(ends)
         return Said(apart + first, _joined(*why), unknown.leading, " ".join(more))
     if answer.verdict == "none":
         one = _of_none(answer)

@@ -274,7 +274,7 @@ def _autocovariances(cases: Cases, values: FloatArray, lags: int = LAGS) -> dict
         for rows in series:
             part = values[rows]
             for lag in range(min(lags, len(part) - 1) + 1):
-                sums[lag] += float(np.sum(part[lag:] * part[: len(part) - lag]))
+                sums[lag] += float(np.vdot(part[lag:], part[: len(part) - lag]))
         found[channel] = sums / (sum(map(len, series)) * values.shape[1])
     return found
 

@@ -65,7 +65,7 @@ class Refitting:
             refitter.renew(ranked)
         fitted = self._fitted(shortlist.for_all_runs(order, quick=quick))
         fitted += self._fitted(shortlist.of_runs(order, [end for _, end in fitted], quick=quick))
-        fitted += self._fitted(akin(order, fitted))
+        fitted += self._fitted(akin(order, fitted, refitter.point.chi2))
         fitted = [(score, self._beside_fewer(score, end, fitted)) for score, end in fitted]
         fitted = [(score, end) for score, end in fitted if self._may_be_of_runs(score.hypothesis, end)]
         asked = [s.hypothesis for s in ranked]
@@ -104,8 +104,9 @@ class Refitting:
         return list(zip(chosen, ends, strict=True))
 
     def _beside_fewer(self, score: Score, end: Point, fitted: Sequence[tuple[Score, Point]]) -> Point:
-        """The refit of a hypothesis, where it ended with what it has more than another at the end of its range: from
-        there the way on may be flat, as for the lag of a gear whose rate is limited.  Begun again from the other."""
+        """The refit of a hypothesis, begun again from that of one with fewer parameters where it ended worse than this,
+        or with what it has more at the end of its range: the way on may be flat from there, as for the lag of a gear
+        whose rate is limited, or no way at all, as for the direction of a wind of nothing."""
         asked, refitter = score.hypothesis, self.refitter
         own = dict(zip(end.names, end.unit, strict=True))
         for fewer, there in fitted:
@@ -113,15 +114,20 @@ class Refitting:
                 continue
             known = dict(zip(there.names, there.unit, strict=True))
             more = [name for name in asked.names if name not in known]
+            if not more:
+                continue
             null = refitter.bench.null(more)
             away = inwards(null)
-            if not more or not away.all() or any(own[name] != z for name, z in zip(more, null, strict=True)):
+            at_end = away.all() and all(own[name] == z for name, z in zip(more, null, strict=True))
+            if not at_end and end.chi2 <= there.chi2 + ENOUGH:
                 continue
-            step = away * np.array([typical(refitter.bench, name) for name in more])
-            beside = [dict(zip(more, np.clip(null + by * step, 0.0, 1.0), strict=True)) for by in FURTHER]
+            size = np.array([typical(refitter.bench, name) for name in more])
+            steps = [by * away for by in FURTHER] if away.all() else [np.where(away, away, by) for by in (1.0, -1.0)]
+            beside = [dict(zip(more, np.clip(null + step * size, 0.0, 1.0), strict=True)) for step in steps]
             starts = np.array([[{**known, **one}[name] for name in end.names] for one in beside]).T
             begun = replace(refitter.point, offsets=there.offsets)
             end = min([end, *refitter.steps(begun, score, starts, MOST_STEPS)], key=lambda one: one.chi2)
+            own = dict(zip(end.names, end.unit, strict=True))
             refitter.known.ends[asked.names] = end
         return end
 

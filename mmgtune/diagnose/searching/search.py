@@ -184,9 +184,12 @@ def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
 
 
 def _left(hypotheses: Sequence[Hypothesis], found: Found, dropped: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """Hypotheses that may still be looked at beside the causes found."""
+    """Hypotheses that may still be looked at beside the causes found; of a form that is a part of another only that,
+    where a cause is the other part: a limit of the rate of a rudder that lags is one cause with the lag."""
     open_ones = [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
-    return [h for h in open_ones if not h.refines or any(h.holds(cause) for cause in found.causes)]
+    wholes = [h for h in open_ones if any(h.holds(cause) for cause in found.causes)]
+    parts = [h for h in open_ones if h not in wholes and any(whole.holds(h) for whole in wholes)]
+    return [h for h in open_ones if h not in parts and (not h.refines or h in wholes)]
 
 
 def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:

@@ -41,6 +41,9 @@ BEGUN, STARTS_BEGUN = 18, 3
 RUNS_REFITTED = 6
 """Hypotheses of values that differ between runs that are refitted each time, at most."""
 
+MUCH = 0.5
+"""Share of what the best explains from which forms with more parameters are refitted too."""
+
 FIRST = 4
 """First steps of an effect with one side only, from each start: in the first of them the targets only follow."""
 
@@ -209,23 +212,33 @@ class Shortlist:
         if left > STRONG * n:
             return earned[: 1 if quick else RUNS_REFITTED]
         alike = max((s.score / s.inflation - len(s.step) * price for s in order if not s.hypothesis.by), default=0.0)
-        return [s for s in earned if s.score - self.refitter.n_new(s.hypothesis) * price > alike][: 1 if quick else 2]
+        better = [s for s in earned if s.score - self.refitter.n_new(s.hypothesis) * price > alike]
+        # Where much was left before, scores are far off: the zero of the rudder in one run is behind a wind there.
+        return better[: 1 if quick else RUNS_REFITTED if self.refitter.strong else 2]
 
 
-def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[Score]:
+def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]], chi2: float) -> list[Score]:
     """Hypotheses that act much like the best fit, or the best with one value for all runs, and whose scores may mislead
-    (the score of a wind is that of a light one); and, where the best has values by group of runs, its special cases."""
+    (the score of a wind is that of a light one); where the best has values by group of runs, its special cases; and
+    forms with more parameters of what explains much: alone these may do nothing, as the direction of a measured wind.
+
+    chi2  of what they are fitted beside
+    """
     if not fitted:
         return []
-    ranked = [score.hypothesis for score, _ in sorted(fitted, key=lambda one: one[1].chi2)]
+    ends = sorted(fitted, key=lambda one: one[1].chi2)
+    ranked = [score.hypothesis for score, _ in ends]
     best = ranked[0]
     for_all = next((one for one in ranked if not one.by), best)
+    much = chi2 - MUCH * (chi2 - ends[0][1].chi2)
+    good = [score.hypothesis for score, end in ends if end.chi2 <= much and not score.hypothesis.by]
     there = {score.hypothesis.names for score, _ in fitted}
     found = []
     for score in order:
         one = score.hypothesis
         alike = any(one.tag in other.effect.akin and one.by in ("", other.by) for other in (best, for_all))
         special = bool(best.by and one.by) and best.holds(one)
-        if (alike or special) and score.power > 0.0 and one.names not in there:
+        fuller = not one.by and any(one.holds(other) for other in good)
+        if (fuller or (score.power > 0.0 and (alike or special))) and one.names not in there:
             found.append(score)
     return found

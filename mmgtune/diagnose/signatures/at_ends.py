@@ -79,10 +79,19 @@ class AtEnds:
         if not self.first:
             return ""
         if not self.from_formulas:
-            far = f"{len(self.alone)} of {self.targets} coefficients"
-            return f"Re-tuned without any cause, {far} end at the end of their range."
+            return f"{self._alone}."
         far = "" if self.words in told else f"{capital(self.words)}. "
         return f"{far}What her own tests, or those of a sister ship, say of them comes first."
+
+    @property
+    def aside(self) -> str:
+        """What is told by them beside causes that explain nearly all and leave few at an end."""
+        return f"{self._alone}: the ship may also be unlike her profile in many ways."
+
+    @property
+    def _alone(self) -> str:
+        far = f"{len(self.alone)} of {self.targets} coefficients"
+        return f"Re-tuned without any cause, {far} end at the end of their range"
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
