@@ -39,7 +39,6 @@ EFFECT = CoefficientsEffect(
     fields={"factor": factor_about_one("thrust over that of the profile's propeller", 0.5, 0.05, "half as much again")},
     variants=(("factor",),),
     varies=("factor",),
-    subject="thrust of the propeller",
     akin=("rpm-scale", "engine-droop"),
     sentence=lambda v: f"The propeller gave {v['factor']} times the thrust that the profile has for it",
 )

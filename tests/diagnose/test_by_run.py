@@ -249,6 +249,29 @@ def test_what_is_common_to_all_errors_is_told_once():
     assert (row["from_mean"], row["from_mean_stderr"]) == (pytest.approx(-0.1), 0.003)
 
 
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ((0.979, 1.06, 0.97, 0.975), "1.06 times the model's in run1 and 0.97 to 0.98 in the other 3"),
+        ((0.92, 1.06, 0.98, 0.95), "0.92 to 1.06 times the model's"),
+        ((0.98, 1.06), "0.98 to 1.06 times the model's"),
+    ],
+)
+@pytest.mark.parametrize("apart", [0.003, None], ids=["known beside each other", "each known by itself"])
+def test_one_run_that_is_off_beside_all_others_is_named(values, said, apart):
+    rows = [{"factor": Estimate("x", value, None, None, 0.03 if apart else 0.003, apart)} for value in values]
+    found = by_run("thrust", ("factor",), rows)
+    assert f"The thrust of the propeller differed from run to run: {said}" in found.sentence
+
+
+def test_a_value_of_a_run_at_the_end_of_what_was_looked_for_is_said():
+    """One of the runs was another ship's: a loading of 1.4, and no word that it could be no more."""
+    rows = [{"draught": Estimate("x", v, None, None, 0.003, at_end=v > 1.3)} for v in (0.95, 0.951, 1.4, 0.949)]
+    said = by_run("loading", ("draught",), rows).sentence
+    assert "1.4 in run2 and 0.95 in the other 3" in said
+    assert said.endswith("; in run2 it is at the end of what was looked for, and may lie beyond it")
+
+
 def of_gains(values, rudder=(), shaft=()):
     """Gains of the rudder in runs with these largest rudder angles [deg] and revolutions [rpm]."""
     rows = [{"factor": Estimate("x", value, None, None, 0.004, 0.001)} for value in values]

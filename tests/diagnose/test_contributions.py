@@ -332,6 +332,16 @@ def test_slow_noise_of_sensors_is_nothing_unknown(certainty, left):
     assert elsewhere.unknown == pytest.approx(0.125)  # heading and yaw rate fit
 
 
+@pytest.mark.parametrize(("n_groups", "structured"), [(12, True), (8, False)])
+def test_what_few_blocks_predict_of_one_channel_may_be_chance(n_groups, structured):
+    """Four runs of 100 s of a model of 7 m: a clean ship with slow noise was "something that this program does not
+    know"."""
+    explained = {"x": ("time", 0.75), "y": ("time", 0.1)}
+    left = Leftover(0.35, {"x": 0.37, "y": 0.35}, {}, {}, explained, {}, n_groups=n_groups)
+    assert left.structured == structured
+    assert replace(left, explained=dict.fromkeys("xy", ("time", 0.75))).structured
+
+
 def test_positions_that_wander_no_more_than_their_noise_may_point_to_no_sensor():
     left = Leftover(6.0, {"x": 9.0, "y": 9.0, "r": 0.0}, {}, {}, {}, {})
     assert left.alone == "position"
@@ -1180,6 +1190,40 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     said = saying.said(seen)
     assert said.headline == seen.contradicted
     assert said.explained.startswith("Something is wrong that this program cannot name. The best")
+
+
+@pytest.mark.parametrize(
+    ("unknown", "off", "said"),
+    [
+        (21.5, False, " Where it was found, an error 5 times the noise of the sensors is left: the form of what was "),
+        (0.9, False, ""),
+        (
+            21.5,
+            True,
+            " What is left there is 7 times the noise of the sensors, more than coefficients known no better ",
+        ),
+    ],
+)
+def test_causes_that_leave_far_more_than_noise_are_of_another_form(unknown, off, said, monkeypatch):
+    """A current that turned within half a minute was told as one that grows, and no word of what it left."""
+    for name, told in (
+        ("_of_the_named", "A tide."),
+        ("clock_rate", ""),
+        ("_at_ends", ""),
+        ("_brought", ["Adding it."]),
+    ):
+        monkeypatch.setattr(saying, name, lambda *_, told=told: told)
+    seen = SimpleNamespace(
+        verdict="found",
+        causes=(SimpleNamespace(tag="current", effect=object()),),
+        gain=SimpleNamespace(form_is_off=off, left=7.0),
+        leftover=SimpleNamespace(unknown=unknown),
+        doubted=None,
+        differs_by_run=False,
+    )
+    told = saying._of_causes(seen)
+    assert told.startswith(f"A tide. Adding it.{said}")
+    assert ("the form of what was found is not quite that of the ship" in told) == bool(said)
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ from ..causes.cause import Candidate, Cause, Trace
 from ..causes.contributions import Aside, Contribution, contributions, unlike_without, with_only
 from ..causes.doubted import Doubted, Leading
 from ..evidence.gathering import error_of, evidence
-from ..evidence.leftover import NOTICED, Leftover, leftover
+from ..evidence.leftover import NOTICED, OF_ANOTHER_FORM, Leftover, leftover
 from ..held_out.gain import WORSE, J_of, held_out
 from ..held_out.unseen import Unseen
 from ..result import Diagnosis
@@ -45,9 +45,6 @@ from ..voyages.windows import Choice
 from .detecting import detectability
 from .one_form import AS_UNSEEN, told_on_test
 from .separate import Suggestion, suggest
-
-OF_ANOTHER_FORM = 1.0
-"""Variance beyond noise, as a share of it, from which on what a single cause leaves says that its form is another."""
 
 A_LITTLE_OFF, NEARLY_ALL = 0.1, 0.99
 """That variance from which it may be a little off, and share of the fall of chi-squared from which an effect that acts

@@ -9,7 +9,7 @@ from ...phrases import LARGE, capital, figures, in_percent, listed, small
 from ...units import DEG
 from ..bench.of_hull import AS_WELL
 from ..causes.belief import MOSTLY, TOLD
-from ..evidence.leftover import change_in_words, in_words
+from ..evidence.leftover import OF_ANOTHER_FORM, change_in_words, in_words
 from ..evidence.misread import RUDDER
 from ..evidence.misread import in_words as misread_in_words
 from ..held_out.gain import MOST
@@ -80,7 +80,8 @@ def said(answer: Answer) -> Said:
         one = _of_none(answer)
         return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
     beside = ""
-    if answer.causes and answer.verdict != "interrupted" and not answer.gain.form_is_off:
+    formed = not (answer.gain.form_is_off or answer.leftover.unknown > OF_ANOTHER_FORM)
+    if answer.causes and answer.verdict != "interrupted" and formed:
         far = moved_in_words(answer.moved)
         beside = _joined(f"Re-tuned beside that: {far}." if far else "", _of_ship(answer))
     return Said(" ".join([apart + _of_causes(answer), *more]), beside)
@@ -111,12 +112,14 @@ def _of_causes(answer: Answer) -> str:
         )
     named = _joined(named, clock_rate(answer.causes), _at_ends(answer))
     gained = _joined(named, *_brought(answer))
+    off = "the form of what was found is not quite that of the ship, or something smaller is at work beside it."
     if answer.gain.form_is_off:
         gained = (
             f"{gained} What is left there is {_times(answer.gain.left)} times the noise of the sensors, more than "
-            "coefficients known no better explain: the form of what was found is not quite that of the ship, or "
-            "something smaller is at work beside it."
+            f"coefficients known no better explain: {off}"
         )
+    elif answer.leftover.unknown > OF_ANOTHER_FORM:
+        gained = f"{gained} Where it was found, {_of_noise(answer.leftover.unknown)} is left: {off}"
     if answer.doubted:
         gained = f"{gained} {answer.doubted.sentence}"
     if not answer.differs_by_run:

@@ -38,6 +38,9 @@ IN_STEP = 2.0
 """Standard error of a value over that of its distance from the mean of all, from which all are known better beside each
 other than alone: what they have in common is then told once."""
 
+ODD = 5.0
+"""Times the largest distance of other runs from their mean by which a run is off that is named."""
+
 GIVEN: dict[str, tuple[Callable[[Visited], float], str]] = {
     "the largest rudder angle": (lambda run: run.largest_rudder, "rad"),
     "the revolutions": (lambda run: float(np.nanmean(run.shaft)) if np.isfinite(run.shaft).any() else math.nan, "1/s"),
@@ -222,7 +225,7 @@ class ByRun:
         shown = [k for k in range(len(self.groups)) if self.shows(k)]
         if (beside := self._differ_in_step) is not None:
             told = self._in_step_in_words(beside)
-            return f"The {subject} differed from {word} to {word}: {told}{self._doubted}"
+            return f"The {subject} differed from {word} to {word}: {told}{self._at_end}{self._doubted}"
         if not shown:
             return f"The {subject} may have differed from {word} to {word}, in none for certain{self._doubted}"
         sizes = [self.size(k)[0] for k in shown]
@@ -240,10 +243,12 @@ class ByRun:
             text += f"{self._number_of}{size} in {where}, and none for certain in the other {others}"
         else:
             of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
+            if not others:
+                of_all = self._of_all(max(error or 0.0 for _, error in map(self.size, shown)))
             text += f"{self._number_of}{of_all}{self._each_known_to(shown)}"
             several = [name_of(self.groups[k]) for k in shown]
             text += f" in {listed(several, 4)}, and none for certain in the other {others}" if others else ""
-        return text + self._all_towards(shown) + self._within() + self._doubted
+        return text + self._all_towards(shown) + self._within() + self._at_end + self._doubted
 
     def _told_of(self, k: int) -> str:
         """Size, direction and name of a group, in words."""
@@ -268,11 +273,38 @@ class ByRun:
 
     def _in_step_in_words(self, beside: float) -> str:
         """From the least to the largest, with what is common to all errors told once."""
-        sizes = [self.size(k)[0] for k in range(len(self.groups))]
         common = max(error or 0.0 for _, error in map(self.size, range(len(self.groups))))
         half, between = (error_in_words(NORMAL_95 * error, self.unit) for error in (common, beside))
-        of_all = self._number_of + range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
+        of_all = self._number_of + self._of_all(beside)
         return f"{of_all}, known to ± {between} beside each other and to ± {half} all together"
+
+    def _of_all(self, error: float) -> str:
+        """From the least to the largest, or that of one run and those of all others, which are alike.
+
+        error  standard error of a difference
+        """
+        sizes = np.array([self.size(k)[0] for k in range(len(self.groups))])
+        far = np.abs(sizes - np.median(sizes))
+        odd = int(np.argmax(far))
+        rest = np.delete(sizes, odd)
+        off, apart = abs(sizes[odd] - rest.mean()), float(np.ptp(rest))
+        if len(rest) < FEWEST_GROUPS or self._directed or off <= max(ODD * apart, CERTAIN * error):
+            return range_in_words(float(sizes.min()), float(sizes.max()), self.unit) + self._of_what
+        alike = range_in_words(float(rest.min()), float(rest.max()), self.unit)
+        own = f"{quantity(float(sizes[odd]), None, self.unit)}{self._of_what} in {name_of(self.groups[odd])}"
+        return f"{own} and {alike} in the other {len(rest)}"
+
+    @property
+    def _directed(self) -> bool:
+        """Whether the values have directions."""
+        return self.towards(0) is not None
+
+    @property
+    def _at_end(self) -> str:
+        """Whose values are at the end of what was looked for, in words; "" for nobody's."""
+        ended = [k for k in range(len(self.groups)) if any(self.values[k][name].at_end for name in self._sizes)]
+        shown = listed([name_of(self.groups[k]) for k in ended if self.shows(k)], 4)
+        return f"; in {shown} it is at the end of what was looked for, and may lie beyond it" if shown else ""
 
     @property
     def _much_alike(self) -> bool:
@@ -338,7 +370,7 @@ class ByRun:
     def table(self) -> list[tuple[str, ...]]:
         """Group, size and, where it has one, direction in words, the first row heads."""
         rows: list[tuple[str, ...]] = [(IN_WORDS[self.by], self._what)]
-        rows[0] += ("direction",) if self.towards(0) is not None else ()
+        rows[0] += ("direction",) if self._directed else ()
         rows[0] += ("from the mean",) if self.from_mean(0) is not None else ()
         for k, label in enumerate(self.groups):
             value, error = self.size(k)

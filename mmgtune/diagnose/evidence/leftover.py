@@ -34,6 +34,9 @@ from .misread import Misread, misread_in
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
 
+OF_ANOTHER_FORM = 1.0
+"""Variance beyond noise, as a share of it, from which on what causes leave says that their form is another."""
+
 CLEARLY = 0.15
 """Variance beyond noise from which one sensor may be said to err alone: a model form that is a little off shows first
 in the best log."""
@@ -48,6 +51,9 @@ its variance besides: records hold few of its time constants."""
 
 ALIKE = 0.5
 """Share explained by the ship's state from which what is left is an error of the model."""
+
+FEW = 12
+"""Groups of blocks below which chance predicts so much of one channel by one of six quantities: of two it takes."""
 
 CERTAIN = 4.0
 """Standard errors of that correlation from which chance is out of the question."""
@@ -95,7 +101,8 @@ class Leftover(Brief):
     alike      correlation of what heading and yaw rate say, and of what position and velocity say, over the window
                where it is clearest
     certainty  ``alike`` in standard errors
-    explained  by channel, the largest share one quantity explains, and which
+    explained  by channel, the largest share one quantity explains, and which; n_groups: of blocks that it is predicted
+               from, each of which from all others
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     changed    channels, "u" and "r", whose factor changes within trials, by their ids: of those alone whose noise as
                estimated lasts so long that it hides that
@@ -118,6 +125,7 @@ class Leftover(Brief):
     at_most: Mapping[str, float] = field(default_factory=dict)
     changed: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     misread: Misread = field(default_factory=dict)
+    n_groups: int = FEW
 
     @property
     def unknown(self) -> float:
@@ -160,9 +168,9 @@ class Leftover(Brief):
         if self.excess < NOTICED:
             return False
         noticed = {name for name, excess in self.channels.items() if excess > NOTICED}
-        strong = [share for name, (_, share) in self.explained.items() if name in noticed]
+        strong = sum(share > ALIKE for name, (_, share) in self.explained.items() if name in noticed)
         certain = [one for pair, one in self.certainty.items() if noticed.intersection(PAIRS[pair])]
-        return max(strong, default=0.0) > ALIKE or max(certain, default=0.0) > CERTAIN
+        return strong >= (1 if self.n_groups >= FEW else 2) or max(certain, default=0.0) > CERTAIN
 
 
 def leftover(bench: Workbench, point: Point) -> Leftover:
@@ -180,6 +188,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
             excused[name] = min(float(left_open[k]) / level[k] ** 2, max(beyond, 0.0))
             excess[name] = beyond - excused[name]
     slow = {name: _slow(bench, name, level[STATES.index(name)], value) for name, value in excess.items()}
+    explained, n_groups = _explained(bench, residuals, [name for name, value in excess.items() if value > NOTICED])
     alike = {window: _alike(bench.trials, residuals, window) for window in WINDOWS}
     clearest = {pair: max((alike[window][pair] for window in WINDOWS), key=lambda one: one[1]) for pair in PAIRS}
     return Leftover(
@@ -187,7 +196,8 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         channels=excess,
         alike={pair: correlation for pair, (correlation, _) in clearest.items()},
         certainty={pair: certainty for pair, (_, certainty) in clearest.items()},
-        explained=_explained(bench, residuals, [name for name, value in excess.items() if value > NOTICED]),
+        explained=explained,
+        n_groups=n_groups,
         offsets=offsets_of(residuals, level),
         left_open=float(np.mean(list(excused.values()))),
         slows={name: slow for name, (slow, _) in slow.items()},
@@ -371,8 +381,9 @@ def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: flo
 
 def _explained(
     bench: Workbench, residuals: Sequence[FloatArray], channels: Sequence[str]
-) -> dict[str, tuple[str, float]]:
-    """By channel, the quantity that explains most of the slow part of its residual; none where windows are short."""
+) -> tuple[dict[str, tuple[str, float]], int]:
+    """By channel, the quantity that explains most of the slow part of its residual; none where windows are short.  And
+    from how many groups of blocks that is predicted."""
     lengths = [max(2, round(BLOCK / float(np.median(np.diff(trial.t))))) for trial in bench.trials]
 
     def means(values: Sequence[FloatArray]) -> FloatArray:
@@ -398,4 +409,4 @@ def _explained(
         shares = share_explained(y, states, blocks=blocks)
         best = max(shares, key=lambda one: shares[one])
         found[name] = (best, float(shares[best]))
-    return found
+    return found, len(np.unique(blocks))
