@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...backends import STATES
 from ...effects import Effect, ForceEffect, SensorEffect
+from ...fitting.journal import side_by_side
 from ...fitting.least_squares import fit_offsets
 from ...trial import Trial
 from ..bench.hypotheses import Hypothesis
@@ -245,7 +247,9 @@ def contributions(bench: Workbench, found: Found, unseen: Unseen) -> list[Contri
 
 def _fewer(bench: Workbench, found: Found) -> list[Point]:
     """What was found, refitted without each cause in turn; nothing where there is only one."""
-    return [without(bench, found.final, cause) for cause in found.causes] if len(found.causes) > 1 else []
+    if len(found.causes) < 2:
+        return []
+    return side_by_side([partial(without, bench, found.final, cause) for cause in found.causes])
 
 
 def _brought(bench: Workbench, found: Found, fewer: Sequence[Point], unseen: Unseen) -> list[Contribution]:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from ...arrays import FloatArray
 from ...fitting.box import AT, base_of
+from ...fitting.journal import side_by_side
 from ...fitting.lost import require_simulated
 from ...hooks import Phase
 from ...trial import Held
@@ -214,8 +216,11 @@ def _exchanged(
 
 def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
     """Drop causes of those asked for that others explain."""
-    for hypothesis in list(asked):
-        fewer = without(bench, found.final, hypothesis)
+    asked, final = list(asked), found.final
+    alone = side_by_side([partial(without, bench, final, hypothesis) for hypothesis in asked])
+    for hypothesis, fewer in zip(asked, alone, strict=True):
+        if found.final is not final:  # one was dropped since
+            fewer = without(bench, found.final, hypothesis)
         if fewer.chi2 - found.final.chi2 < price_of(bench, found, hypothesis) + ENOUGH:
             found.causes.remove(hypothesis)
             found.final = fewer
