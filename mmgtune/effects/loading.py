@@ -1,6 +1,7 @@
 """The ship lies deeper, lighter or trimmed, other than the profile has her."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from ..physics.elementary import exp, log
@@ -79,7 +80,10 @@ EFFECT = CoefficientsEffect(
             typical=lambda _: 0.1,
             bounds_source="half the draught",
         ),
-        "displacement": factor_about_one("factor on the displacement at that draught", 0.4, 0.05, "as for the draught"),
+        "displacement": replace(
+            factor_about_one("factor on the displacement at that draught", 0.4, 0.05, "as for the draught"),
+            of_run=lambda _: (0.75, 1.25),  # of one hull trim and the density of the water change it, by far less
+        ),
         **{name: _power(name) for name in LinearDerivatives._fields},
         "inertia": _power("the added mass in sway and the added moment of inertia in yaw"),
     },

@@ -12,7 +12,9 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
+from mmgtune.diagnose.bench.hypotheses import Hypothesis
 from mmgtune.diagnose.causes.by_run import ByRun
+from mmgtune.diagnose.searching.refitting import Refitting
 from mmgtune.diagnose.signatures.intervals import Estimate
 from mmgtune.diagnose.signatures.intervals import _apart as apart_of
 from mmgtune.diagnose.signatures.wording import quantity, range_in_words
@@ -247,6 +249,19 @@ def test_what_is_common_to_all_errors_is_told_once():
     assert found.table()[1] == ("run0", "0.990 ± 0.059", "0.0800 ± 0.0059")
     row = found.to_dict()["values"][1]
     assert (row["from_mean"], row["from_mean_stderr"]) == (pytest.approx(-0.1), 0.003)
+
+
+@pytest.mark.parametrize(("values", "may_be"), [((0.95, 1.1), True), ((0.69, 0.94), False)])
+def test_one_hull_has_no_displacements_so_far_apart_at_a_draught(values, may_be):
+    """Water of another depth in each run was 1.24 times the draught at 0.69 times the displacement."""
+    effect = find_effect("loading")
+    asked = Hypothesis(effect, ("displacement",), "trial", ("trial:a", "trial:b"))
+    bench = SimpleNamespace(
+        values=lambda _: dict(zip(asked.names, values, strict=True)),
+        parameter=lambda _: effect.parameters["displacement"],
+        model=SimpleNamespace(profile=load_profile("suzaku")),
+    )
+    assert Refitting(SimpleNamespace(bench=bench))._may_be_of_runs(asked, None) == may_be
 
 
 @pytest.mark.parametrize(
