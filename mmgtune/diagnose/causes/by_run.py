@@ -39,7 +39,7 @@ IN_STEP = 2.0
 other than alone: what they have in common is then told once."""
 
 ODD = 5.0
-"""Times the largest distance of other runs from their mean by which a run is off that is named."""
+"""Times the range of the values of all other runs by which a run is off that is named."""
 
 GIVEN: dict[str, tuple[Callable[[Visited], float], str]] = {
     "the largest rudder angle": (lambda run: run.largest_rudder, "rad"),
@@ -242,8 +242,9 @@ class ByRun:
             where = name_of(self.groups[shown[0]])
             text += f"{self._number_of}{size} in {where}, and none for certain in the other {others}"
         else:
-            of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
-            if not others:
+            if others:
+                of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
+            else:
                 of_all = self._of_all(max(error or 0.0 for _, error in map(self.size, shown)))
             text += f"{self._number_of}{of_all}{self._each_known_to(shown)}"
             several = [name_of(self.groups[k]) for k in shown]

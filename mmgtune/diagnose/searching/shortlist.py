@@ -231,7 +231,7 @@ def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]], chi2: fl
     best = ranked[0]
     for_all = next((one for one in ranked if not one.by), best)
     much = chi2 - MUCH * (chi2 - ends[0][1].chi2)
-    good = [score.hypothesis for score, end in ends if end.chi2 <= much and not score.hypothesis.by]
+    good = [score.hypothesis for score, end in ends if end.chi2 <= min(much, chi2 - ENOUGH) and not score.hypothesis.by]
     there = {score.hypothesis.names for score, _ in fitted}
     found = []
     for score in order:
