@@ -279,6 +279,12 @@ def test_one_run_that_is_off_beside_all_others_is_named(values, said, apart):
     assert f"The thrust of the propeller differed from run to run: {said}" in found.sentence
 
 
+def test_the_only_run_without_a_value_is_the_other_one():
+    rows = [{"angle": Estimate("x", value * DEG, None, None, 0.04 * DEG)} for value in (1.0, 1.5, 0.01)]
+    said = by_run("rudder-offset", ("angle",), rows).sentence
+    assert said.endswith("1 to 1.5° in run0 and run1, and none for certain in the other one")
+
+
 def test_a_value_of_a_run_at_the_end_of_what_was_looked_for_is_said():
     """One of the runs was another ship's: a loading of 1.4, and no word that it could be no more."""
     rows = [{"draught": Estimate("x", v, None, None, 0.003, at_end=v > 1.3)} for v in (0.95, 0.951, 1.4, 0.949)]

@@ -240,7 +240,7 @@ class ByRun:
             value, error = self.size(shown[0])
             size = quantity(value, None if error is None else NORMAL_95 * error, self.unit) + self._of_what
             where = name_of(self.groups[shown[0]])
-            text += f"{self._number_of}{size} in {where}, and none for certain in the other {others}"
+            text += f"{self._number_of}{size} in {where}, and none for certain in the {_others(others)}"
         else:
             if others:
                 of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
@@ -248,7 +248,7 @@ class ByRun:
                 of_all = self._of_all(max(error or 0.0 for _, error in map(self.size, shown)))
             text += f"{self._number_of}{of_all}{self._each_known_to(shown)}"
             several = [name_of(self.groups[k]) for k in shown]
-            text += f" in {listed(several, 4)}, and none for certain in the other {others}" if others else ""
+            text += f" in {listed(several, 4)}, and none for certain in the {_others(others)}" if others else ""
         return text + self._all_towards(shown) + self._within() + self._at_end + self._doubted
 
     def _told_of(self, k: int) -> str:
@@ -441,6 +441,11 @@ def _along_a_line(at: FloatArray, values: FloatArray) -> bool:
     told = float(np.corrcoef(at, values)[0, 1]) ** 2
     free = len(values) - 2
     return float(fdtrc(1, free, free * told / max(1.0 - told, 1e-15))) < BY_CHANCE
+
+
+def _others(n: int) -> str:
+    """So many others, in words."""
+    return "other one" if n == 1 else f"other {n}"
 
 
 def _degrees(angle: float, error: float | None) -> str:
