@@ -80,8 +80,7 @@ def said(answer: Answer) -> Said:
         one = _of_none(answer)
         return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
     beside = ""
-    formed = not (answer.gain.form_is_off or answer.leftover.unknown > OF_ANOTHER_FORM)
-    if answer.causes and answer.verdict != "interrupted" and formed:
+    if answer.causes and answer.verdict != "interrupted" and not _of_another_form(answer):
         far = moved_in_words(answer.moved)
         beside = _joined(f"Re-tuned beside that: {far}." if far else "", _of_ship(answer))
     return Said(" ".join([apart + _of_causes(answer), *more]), beside)
@@ -111,15 +110,7 @@ def _of_causes(answer: Answer) -> str:
             f"{figures(before, digits)} to {figures(after, digits)} times the noise of the measurements."
         )
     named = _joined(named, clock_rate(answer.causes), _at_ends(answer))
-    gained = _joined(named, *_brought(answer))
-    off = "the form of what was found is not quite that of the ship, or something smaller is at work beside it."
-    if answer.gain.form_is_off:
-        gained = (
-            f"{gained} What is left there is {_times(answer.gain.left)} times the noise of the sensors, more than "
-            f"coefficients known no better explain: {off}"
-        )
-    elif answer.leftover.unknown > OF_ANOTHER_FORM:
-        gained = f"{gained} Where it was found, {_of_noise(answer.leftover.unknown)} is left: {off}"
+    gained = _joined(named, *_brought(answer), _of_another_form(answer))
     if answer.doubted:
         gained = f"{gained} {answer.doubted.sentence}"
     if not answer.differs_by_run:
@@ -130,6 +121,17 @@ def _of_causes(answer: Answer) -> str:
         f"{gained} What differs between runs was estimated there from the first {100.0 * answer.gain.first_part:.0f} "
         "% of each run, and the rest was judged; the extended profile leaves it out."
     )
+
+
+def _of_another_form(answer: Answer) -> str:
+    """How much the causes leave where their form is not quite that of the ship, in a sentence; "" where it is."""
+    off = "the form of what was found is not quite that of the ship, or something smaller is at work beside it."
+    if answer.gain.form_is_off:
+        left = f"{_times(answer.gain.left)} times the noise of the sensors"
+        return f"What is left there is {left}, more than coefficients known no better explain: {off}"
+    if answer.leftover.unknown > OF_ANOTHER_FORM:
+        return f"Where it was found, {_of_noise(answer.leftover.unknown)} is left: {off}"
+    return ""
 
 
 def _at_ends(answer: Answer) -> str:
