@@ -285,9 +285,11 @@ def test_the_only_run_without_a_value_is_the_other_one():
     assert said.endswith("1 to 1.5° in run0 and run1, and none for certain in the other one")
 
 
-def test_a_value_of_a_run_at_the_end_of_what_was_looked_for_is_said():
+@pytest.mark.parametrize(("stderr", "apart"), [(0.003, None), (0.03, 0.003)], ids=["each by itself", "in step"])
+def test_a_value_of_a_run_at_the_end_of_what_was_looked_for_is_said(stderr, apart):
     """One of the runs was another ship's: a loading of 1.4, and no word that it could be no more."""
-    rows = [{"draught": Estimate("x", v, None, None, 0.003, at_end=v > 1.3)} for v in (0.95, 0.951, 1.4, 0.949)]
+    values = (0.95, 0.951, 1.4, 0.949)
+    rows = [{"draught": Estimate("x", v, None, None, stderr, apart, at_end=v > 1.3)} for v in values]
     said = by_run("loading", ("draught",), rows).sentence
     assert "1.4 in run2 and 0.95 in the other 3" in said
     assert said.endswith("; in run2 it is at the end of what was looked for, and may lie beyond it")

@@ -111,6 +111,21 @@ def test_beside_a_cause_what_chance_brings_least_of_is_refitted_however_little_i
     assert len(names) == len(set(names)) == REFITTED + beside
 
 
+@pytest.mark.parametrize(("strong", "quick", "n"), [(True, False, 5), (False, False, 2), (True, True, 1)])
+def test_where_much_was_left_values_of_runs_are_refitted_whatever_their_order(strong, quick, n):
+    """The zero of a rudder in one run stood third, behind a wind and waves of that run, and was not looked at."""
+
+    def score(name, promised, by="trial"):
+        effect = SimpleNamespace(one_of_many=False, form=())
+        return Score(SimpleNamespace(effect=effect, by=by, names=(name,)), promised, np.ones(1), 1.0, 0.9, 1.0, 0.5)
+
+    by_run = [score(name, 500.0 - 10.0 * k) for k, name in enumerate(("wind", "waves", "zero", "gain", "draught"))]
+    order = [*by_run, score("gain", 300.0, ""), score("thrust", 290.0)]
+    bench = SimpleNamespace(price=9.0, problem=SimpleNamespace(n_residuals=1000))
+    refitter = SimpleNamespace(strong=strong, bench=bench, n_new=lambda one: 2, point=SimpleNamespace(chi2=3000.0))
+    assert Shortlist(refitter).of_runs(order, [SimpleNamespace(chi2=1050.0)], quick=quick) == by_run[:n]
+
+
 @pytest.mark.long
 def test_beside_one_that_leaves_noise_others_are_given_up(look):
     refitter, by_names = look
