@@ -8,10 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.bench import workbench
-from mmgtune.diagnose.bench.hypotheses import known_causes
-from mmgtune.diagnose.bench.workbench import make_workbench
+from mmgtune.diagnose.bench.hypotheses import Hypothesis, known_causes
+from mmgtune.diagnose.bench.workbench import Point, make_workbench
+from mmgtune.diagnose.searching import refitting
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.searching.look import _as_given as as_given
 from mmgtune.diagnose.searching.refitter import HARDLY_MORE, HOPELESS, Known, Refitter
@@ -19,6 +21,7 @@ from mmgtune.diagnose.searching.refitting import Refitting
 from mmgtune.diagnose.searching.shortlist import REFITTED, Shortlist
 from mmgtune.diagnose.signatures.linear import linearise
 from mmgtune.diagnose.signatures.screening import Score, scores
+from mmgtune.effects import find_effect
 from mmgtune.fitting.least_squares import LeastSquaresResult
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, with_effects
@@ -124,6 +127,32 @@ def test_where_much_was_left_values_of_runs_are_refitted_whatever_their_order(st
     bench = SimpleNamespace(price=9.0, problem=SimpleNamespace(n_residuals=1000))
     refitter = SimpleNamespace(strong=strong, bench=bench, n_new=lambda one: 2, point=SimpleNamespace(chi2=3000.0))
     assert Shortlist(refitter).of_runs(order, [SimpleNamespace(chi2=1050.0)], quick=quick) == by_run[:n]
+
+
+@pytest.mark.parametrize(("chi2", "again"), [(500.0, True), (105.0, False), (90.0, False)])
+def test_a_form_that_ended_worse_than_one_with_fewer_parameters_begins_again_there(chi2, again, monkeypatch):
+    """Turning a wind of nothing does nothing: both together came to a hundredth of what its size alone did."""
+    monkeypatch.setattr(refitting, "typical", lambda bench, name: 0.1)
+    effect, none = find_effect("wind"), np.zeros((1, 6))
+    both, fewer = Hypothesis(effect, ("measured", "turned")), Hypothesis(effect, ("measured",))
+
+    def point(names, unit, chi2):
+        return Point(names, np.array(unit), none, chi2, Integrator())
+
+    began, better = [], point(both.names, [0.8, 0.7], 10.0)
+    refitter = SimpleNamespace(
+        bench=SimpleNamespace(null=lambda names: np.full(len(names), 0.5)),
+        point=point((), [], 1000.0),
+        known=SimpleNamespace(ends={}),
+        steps=lambda point, score, starts, steps: began.append(starts) or [better],
+    )
+    end, there = point(both.names, [0.5, 0.5], chi2), point(fewer.names, [0.8], 100.0)
+    score = SimpleNamespace(hypothesis=both)
+    found = Refitting(refitter)._beside_fewer(score, end, [(SimpleNamespace(hypothesis=fewer), there), (score, end)])
+    assert found is (better if again else end)
+    assert refitter.known.ends == ({both.names: better} if again else {})
+    for starts in began:
+        np.testing.assert_allclose(starts, [[0.8, 0.8], [0.6, 0.4]])
 
 
 @pytest.mark.long
