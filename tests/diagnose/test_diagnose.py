@@ -207,7 +207,15 @@ def test_a_log_of_the_water_that_is_off_is_told_where_the_profile_takes_it_for_r
     assert said in result.sentence()
 
 
-def test_a_vane_that_is_off_is_told_where_the_profile_has_no_wind(tmp_path):
+@pytest.mark.parametrize(
+    "asked",
+    [
+        DiagnoseOptions(effects=("wind", "wave-drift"), targets=("hull.R_0", "wake.w_P0", "rudder.eps"), leeway=0.0),
+        pytest.param(DiagnoseOptions(effects=("wind", "wave-drift", "current")), marks=pytest.mark.long),
+    ],
+    ids=["few targets", "all"],
+)
+def test_a_vane_that_is_off_is_told_where_the_profile_has_no_wind(asked, tmp_path):
     """Turning a wind of nothing does nothing, so its score was none and it was never fitted: waves of each run stood
     for it."""
     speed, towards, off = 14.0, np.radians(120.0), np.radians(25.0)
@@ -218,7 +226,6 @@ def test_a_vane_that_is_off_is_told_where_the_profile_has_no_wind(tmp_path):
         one.id: replace(one, extra={name: np.full(one.n_samples, value) for name, value in logs.items()})
         for one in trials.trials.values()
     }
-    asked = DiagnoseOptions(effects=("wind", "wave-drift", "current"))
     result = diagnose("suzaku", replace(trials, trials=made), asked)
     assert [cause.tag for cause in result.causes] == ["wind"], result.sentence()
     turned = result.causes[0].estimates["effects.wind.turned"]
