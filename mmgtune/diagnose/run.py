@@ -51,8 +51,8 @@ from .held_out.together import Together
 from .held_out.unseen import Unseen
 from .result import Diagnosis
 from .searching.narrow import narrow_box
-from .searching.refit import ENOUGH, Refit
-from .searching.search import Found, against_its_kin, doubtful_beginning, price_of, search
+from .searching.refit import Refit
+from .searching.search import Found, against_its_kin, doubtful_beginning, fits_better, search
 from .voyages.difference import LEG_NAMES, Difference
 from .voyages.differences import differences
 from .voyages.windows import Choice, looked_at, with_hull_held
@@ -230,9 +230,10 @@ def _looked_at(
     ) -> Found:
         """What a search finds among some of the hypotheses; an effect left out may do as well as what is found.
 
-        earlier  what was found among all: its first look is taken up again
+        earlier  what was found among all: its first look is taken up again; with an effect left out it is to be beaten
         """
-        found = search(bench, hypotheses, in_place, hooks.on_phase, earlier.steps[0] if earlier else None)
+        again, than = earlier.steps[0] if earlier else None, earlier if left_out else None
+        found = search(bench, hypotheses, in_place, hooks.on_phase, again, than)
         found.left_out = list(left_out)
         return found
 
@@ -320,23 +321,12 @@ def _of_the_better_beginning(
     hooks.on_phase(f"looking again without {first}")
     known = bench.known()
     others = searched([one for one in hypotheses if one.tag != first], begun, found)
-    if _fits_better(bench, others, found):
+    if not others.is_beyond_belief and fits_better(bench, others, found):
         other, others = answered(others)
-        if other.names_causes and _fits_better(bench, others, found):
+        if other.names_causes and fits_better(bench, others, found):
             return other, others
     bench.put_back(known)
     return replace(result, interrupted=hooks.stop()), found
-
-
-def _fits_better(bench: Workbench, one: Found, other: Found) -> bool:
-    """Whether the causes of one search leave less than those of another, by the noise as known now, their prices
-    included."""
-    costs = []
-    for found in (one, other):
-        point = found.final
-        left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0, spreads=point.spreads)
-        costs.append(left.chi2 + sum(price_of(bench, found, cause) for cause in found.causes))
-    return costs[0] < costs[1] - ENOUGH
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.searching.search import against_its_kin, doubtful_beginning
+from mmgtune.diagnose.searching.search import Found, against_its_kin, doubtful_beginning, fits_better
 from mmgtune.effects import find_effect
 from mmgtune.hooks import Hooks
 
@@ -88,17 +88,16 @@ def test_a_first_cause_beside_one_that_acts_like_it_is_doubtful(second, doubtful
 
 @pytest.mark.parametrize(("left", "names", "better"), [(980.0, 4, True), (1005.0, 2, True), (1005.0, 4, False)])
 def test_of_two_searches_that_leave_as_much_the_one_of_fewer_sizes_fits_better(left, names, better):
-    run = import_module("mmgtune.diagnose.run")
-
     def found(chi2, n_names):
         point = SimpleNamespace(names=(), unit=np.zeros(0), offsets=None, spreads={}, chi2=chi2)
         return SimpleNamespace(final=point, causes=[SimpleNamespace(names=("one",) * n_names, by="")], steps=[])
 
     chi2 = iter([left, 1000.0])
     bench = SimpleNamespace(price=9.0, refit=lambda *_, **__: SimpleNamespace(chi2=next(chi2)))
-    assert run._fits_better(bench, found(left, names), found(1000.0, 4)) == better
+    assert fits_better(bench, found(left, names), found(1000.0, 4)) == better
 
 
+@pytest.mark.parametrize("too_many", [False, True])  # causes: then it is not believed, and not judged
 @pytest.mark.parametrize(
     ("first", "begun", "other", "fits", "told"),
     [
@@ -114,11 +113,12 @@ def test_of_two_searches_that_leave_as_much_the_one_of_fewer_sizes_fits_better(l
     ],
 )
 def test_the_answer_of_the_second_search_is_told_where_it_is_believed_and_fits_better(
-    first, begun, other, fits, told, monkeypatch
+    first, begun, other, fits, told, too_many, monkeypatch
 ):
+    told = first if too_many and not (other and other.interrupted) else told
     run = import_module("mmgtune.diagnose.run")
     monkeypatch.setattr(run, "doubtful_beginning", lambda bench, found: [refit("wind", 1.0)] if begun else [])
-    monkeypatch.setattr(run, "_fits_better", lambda *searches: fits)
+    monkeypatch.setattr(run, "fits_better", lambda *searches: fits)
     monkeypatch.setattr(run, "against_its_kin", lambda found: first.kin)
     asked = []
 
@@ -126,17 +126,17 @@ def test_the_answer_of_the_second_search_is_told_where_it_is_believed_and_fits_b
         asked.append([one.tag for one in hypotheses])
         bench.knows = len(asked)
         assert earlier == (None if len(asked) == 1 else "found first")
-        return "found first" if len(asked) == 1 else "found then"
+        return "found first" if len(asked) == 1 else then
 
     def answered(found):
         judged.append(found)
         return (first, other)[len(asked) - 1], found
 
-    judged = []
+    judged, then = [], SimpleNamespace(is_beyond_belief=too_many)
     hypotheses = [SimpleNamespace(tag=tag) for tag in ("wind", "current", "wind")]
     bench = Knowing()
     hooks = Hooks(stop=lambda: bool(other and other.interrupted and len(asked) > 1))
     assert run._of_the_better_beginning(bench, searched, answered, hypotheses, hooks)[0] == told
     assert asked[1:] == ([["current"]] if other else [])
-    assert judged[1:] == (["found then"] if other and fits else [])  # not in vain
+    assert judged[1:] == ([then] if other and fits and not too_many else [])  # not in vain
     assert bench.knows == (2 if told == other else 1)  # noise and spreads of what is answered

@@ -1,5 +1,7 @@
 """A second search, without one of the effects: it takes up the first look of the first one."""
 
+from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,12 +13,13 @@ from mmgtune.diagnose.bench.hypotheses import known_causes
 from mmgtune.diagnose.bench.workbench import make_workbench
 from mmgtune.diagnose.searching.look import look_again
 from mmgtune.diagnose.searching.refitter import Known
-from mmgtune.diagnose.searching.search import search
+from mmgtune.diagnose.searching.search import fits_better, search
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials
 from tests.diagnose.sensors import logged
 
+search_of = import_module("mmgtune.diagnose.searching.search")
 EFFECTS = ("current", "heading-bias", "rudder-offset", "steering-lag")
 
 
@@ -69,6 +72,21 @@ def test_a_second_search_finds_what_a_search_among_fewer_finds(searched):
     assert [cause.names for cause in again.causes] == [cause.names for cause in found.causes]
     assert again.final.chi2 == pytest.approx(found.final.chi2, rel=1e-3)
     assert "re-tuning the model without any cause" not in said
+    bench.put_back(after)
+
+
+@pytest.mark.parametrize("given_up", [False, True])
+def test_a_second_search_is_given_up_where_as_many_causes_as_are_believed_fit_no_better(
+    searched, given_up, monkeypatch
+):
+    bench, known, found = searched
+    after = bench.known()
+    monkeypatch.setattr(search_of, "TOO_MANY", 2)
+    monkeypatch.setattr(search_of, "STRONG", np.inf)  # much is left without the current
+    beaten = found if given_up else replace(found, final=found.base, causes=[])
+    again = search(bench, without(known, "current"), (), lambda _: None, found.steps[0], beaten)
+    assert not fits_better(bench, again, found)
+    assert (len(again.steps) == 1) == given_up
     bench.put_back(after)
 
 

@@ -71,6 +71,11 @@ class Found:
         """Terms of the sum of the causes."""
         return n_terms([cause.tag for cause in self.causes])
 
+    @property
+    def is_beyond_belief(self) -> bool:
+        """Whether a sum of so many terms is not believed."""
+        return self.more or self.n_terms >= TOO_MANY
+
 
 def search(
     bench: Workbench,
@@ -78,11 +83,13 @@ def search(
     in_place: Sequence[Hypothesis] = (),
     say: Callable[[str], None] = lambda _: None,
     again: Step | None = None,
+    than: Found | None = None,
 ) -> Found:
     """Forward search with a backward look after each addition; where it is stopped, what was accepted by then.
 
     in_place  hypotheses that do the same as targets; looked at where these end at a bound of their box
     again     the first look of another search, among these hypotheses and more, which is taken up once more
+    than      what this has to fit better than to be of use: given up once as many causes as are believed do not
     """
     if again is None:
         say("re-tuning the model without any cause")
@@ -98,7 +105,7 @@ def search(
     once: list[Hypothesis] = []
     while hypotheses and not bench.stop():
         found.more = found.n_terms >= TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
-        if found.more:
+        if found.more or (than and found.n_terms >= TOO_MANY - 1 and not fits_better(bench, found, than)):
             break
         number = len(found.causes) + 1
         say(Phase("looking for a cause" if number == 1 else f"looking for cause {number}", look=number))
@@ -151,6 +158,17 @@ def search(
         _make_plain(bench, found, hypotheses)
     found.more = found.more and found.n_terms >= TOO_MANY - 1
     return found
+
+
+def fits_better(bench: Workbench, one: Found, other: Found) -> bool:
+    """Whether the causes of one search leave less than those of another, by the noise as known now, their prices
+    included."""
+    costs = []
+    for found in (one, other):
+        point = found.final
+        left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0, spreads=point.spreads)
+        costs.append(left.chi2 + sum(price_of(bench, found, cause) for cause in found.causes))
+    return costs[0] < costs[1] - ENOUGH
 
 
 def doubtful_beginning(bench: Workbench, found: Found) -> list[Refit]:
