@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.searching.search import Found, against_its_kin, doubtful_beginning, fits_better
+from mmgtune.diagnose.searching.search import against_its_kin, doubtful_beginning, fits_better
 from mmgtune.effects import find_effect
 from mmgtune.hooks import Hooks
 

@@ -1159,6 +1159,7 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
         leading=most,
         ends=None,
         of_a_sensor=False,
+        options=DiagnoseOptions(),
     )
     said = saying.said(seen)
     assert said.headline == f"{said.first} {most.sentence}"
@@ -1248,12 +1249,55 @@ def test_how_large_the_best_that_is_known_would_be_is_said_where_it_is_told(size
         misses_test=False,
         of_a_sensor=False,
         explained_share=0.64,
+        options=DiagnoseOptions(),
     )
     said = saying._of_the_unknown(seen).why
     assert said.startswith("The best of what is known, antenna, removes 64 % of the error and leaves")
     assert said.endswith("If it is a part of what is wrong, the antenna stood 24 m aft.") == told
     seen.causes *= 2
     assert "a part of what is wrong" not in saying._of_the_unknown(seen).why
+
+
+@pytest.mark.parametrize(
+    ("asked", "first", "last"),
+    [
+        ((), "this program does not know: the re-tuned model leaves", "no known cause accounts for it."),
+        (("flap",), "nothing of what was looked for explains it: the re-tuned", "Only flap was looked for."),
+        (
+            ("flap", "antenna"),
+            "nothing of what was looked for explains it: the",
+            "Only flap and antenna were looked for.",
+        ),
+    ],
+)
+def test_an_answer_of_few_effects_says_that_no_others_were_looked_for(asked, first, last):
+    """Of a current, with two others asked for: "no known cause accounts for it", and a ship unlike her profile."""
+    left = SimpleNamespace(unknown=60.0, noticed=True, offsets={}, changed={})
+    ends = SimpleNamespace(first="This ship is unlike.", why=lambda unclear: "Many ends.", unlike=False)
+    seen = SimpleNamespace(
+        between=(),
+        together=None,
+        verdict="unexplained",
+        causes=(),
+        contributions=(),
+        contradicted="",
+        looked_for_none=False,
+        jumped={},
+        ended={},
+        wrong_logs={},
+        unclear="",
+        tells_a_part=False,
+        misses_test=False,
+        of_a_sensor=False,
+        leftover=left,
+        ends=ends,
+        options=DiagnoseOptions(effects=asked),
+    )
+    said = saying.said(seen)
+    assert first in said.first
+    assert said.sentence.endswith(last if asked else f"{last} This ship is unlike. Many ends.")
+    seen.of_a_sensor, seen.wrong_logs, seen.misread, left.noticed = True, {"r": {"a": 2.0}}, {}, False
+    assert "looked for" not in saying.said(seen).sentence
 
 
 @pytest.mark.parametrize(

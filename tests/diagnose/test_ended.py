@@ -77,6 +77,7 @@ def test_it_is_said_before_what_cannot_be_named(monkeypatch):
         causes=(),
         wrong_logs={},
         ends=None,
+        options=DiagnoseOptions(),
     )
     first, why, *_ = saying.said(answer)
     assert first == (

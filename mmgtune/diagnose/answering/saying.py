@@ -28,6 +28,10 @@ FADES = 5.0
 """How many times as large as its white part the slow part of a channel's noise must be to be spoken of."""
 
 
+NAMED = 6
+"""Effects asked for that are named, at most."""
+
+
 class Said(NamedTuple):
     """An answer in pieces: what stands alone at the head of a page, what explains it, the cause that would be most of
     what cannot be named, if one is, and what is said beside."""
@@ -71,11 +75,13 @@ def said(answer: Answer) -> Said:
         first, *why = [*pieces, unknown.why]
         if answer.ends and not (answer.contradicted or answer.of_a_sensor):
             unlike, ends = answer.ends.first, answer.ends.why(answer.unclear)
+            if answer.options.effects:
+                unlike, ends = "", ""  # one that was not looked for may stand for it
             if unlike and answer.tells_a_part and answer.explained_share >= MOSTLY and not answer.ends.unlike:
                 unlike, ends = "", answer.ends.aside  # what few causes do is hardly of many coefficients
             first = unlike if unlike and first == _CANNOT_NAME else _joined(first, unlike)
             why.append(ends)
-        return Said(apart + first, _joined(*why), unknown.leading, " ".join(more))
+        return Said(apart + first, _joined(*why, _of_few(answer)), unknown.leading, " ".join(more))
     if answer.verdict == "none":
         one = _of_none(answer)
         return one._replace(first=apart + one.first, beside=_joined(one.beside, *more))
@@ -220,6 +226,15 @@ def _times(ratio: float) -> str:
 
 
 _CANNOT_NAME = "Something is wrong that this program cannot name."
+_NOT_KNOWN = " that this program does not know"
+
+
+def _of_few(answer: Answer) -> str:
+    """That no other effects than those asked for were looked for; "" where all were."""
+    asked = answer.options.effects
+    if not asked or answer.looked_for_none or answer.of_a_sensor:
+        return ""
+    return f"Only {listed(asked, NAMED)} {'was' if len(asked) == 1 else 'were'} looked for."
 
 
 def _summed(answer: Answer) -> str:
@@ -253,9 +268,11 @@ def _of_the_unknown(answer: Answer) -> Said:
         return Said(_CANNOT_NAME, _joined(best, _as_a_part(answer)))
     if answer.contradicted and not (answer.causes or answer.leaves_shape):
         return Said("What the re-tuned model leaves is taken for noise of the sensors.", _fading(answer))
+    asked = answer.options.effects
+    unknown = f"Something is wrong{', and nothing of what was looked for explains it' if asked else _NOT_KNOWN}"
     if answer.misses_test:
         return Said(
-            "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
+            f"{unknown}: the re-tuned model fits the trials looked at, "
             f"but leaves an error {_times(answer.gain.left)} times the noise of the sensors on trials kept for "
             "testing, more than coefficients known no better would."
         )
@@ -271,11 +288,11 @@ def _of_the_unknown(answer: Answer) -> Said:
     excess = answer.leftover.unknown
     left = _of_noise(excess, "measurements")
     offsets = [f"{in_words(*one)}." for one in answer.leftover.offsets.items()]
-    unknown = "Something is wrong that this program does not know"
     if answer.tells_a_part:
         best = f"The best of what is known, {tags}, removes {_explained(answer)} of the error and leaves {left}."
         return Said(f"{unknown}.", _joined(best, _as_a_part(answer), *offsets))
-    return Said(f"{unknown}: the re-tuned model leaves {left}, and no known cause accounts for it.", " ".join(offsets))
+    rest = "" if asked else ", and no known cause accounts for it"
+    return Said(f"{unknown}: the re-tuned model leaves {left}{rest}.", " ".join(offsets))
 
 
 def _as_a_part(answer: Answer) -> str:

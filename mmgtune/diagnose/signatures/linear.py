@@ -1,8 +1,9 @@
 """Everything around a fitted point made linear: what an effect would change that re-tuning cannot imitate.
 
 Signatures are differences over a typical size of the effect, not derivatives at its null: a lag of the rudder or a rate
-limit has no slope there.  An effect with one side only gets another over a small size, as it need not look like a large
-one.  They are whitened, and freed of what the initial states and the free coefficients explain.
+limit has no slope there; over a larger one where an effect does nothing at a typical size.  An effect with one side
+only gets another over a small size, as it need not look like a large one.  They are whitened, and freed of what the
+initial states and the free coefficients explain.
 """
 
 from __future__ import annotations
@@ -30,6 +31,10 @@ SMALL = 0.1
 
 TINY = 1e-3
 """Size of an effect at which the response is linear, as a share of the typical one."""
+
+FURTHER = (2.0, 4.0)
+"""Sizes, in typical ones, at which an effect with one side only is looked at that does nothing at a typical size: a
+limit of 2.6 deg/s cuts nothing off a rudder that is logged at 2.3 deg/s."""
 
 ACTS = 0.5
 """Share of the change at a small size, in proportion, from which an effect acts at a tiny one: a lag within the step of
@@ -100,11 +105,12 @@ class Linear:
 
     residual    (n_rows,) less what free coefficients and initial states explain
     names       parameters with a signature
-    signature   (n_rows, n_names) likewise, for one typical size of each
+    signature   (n_rows, n_names) likewise, scaled to one typical size of each
     one_sided   parameters whose null is an end of their range
     small       (n_rows, n_one_sided) signatures of one-sided parameters over a small size, scaled to a typical one
     tiny        as ``small``, over a size so small that the response is linear, if the effect acts there
     share       (n_names,) of the signature's length that re-tuning leaves
+    reach       sizes, in typical ones, that signatures of one-sided parameters are over, by name
     noise       (n_rows,) the residual less all signatures: hardly anything but noise
     wander      (n_rows, DRAWS) what other noise of the logged inputs would change
     blocks      first rows of pieces of about a minute of one trial
@@ -124,6 +130,7 @@ class Linear:
     small: FloatArray
     tiny: FloatArray
     share: FloatArray
+    reach: Mapping[str, float]
     noise: FloatArray
     wander: FloatArray
     blocks: IntArray
@@ -254,6 +261,7 @@ class Steps:
     places       which of the places simulated shows each step to one side, then to the other; the first, as it is,
                  where a side is left out
     ends         which of what is absent has one side only
+    reach        (n_absent,) size of the step of what is absent, in typical ones
     """
 
     moved: IntArray
@@ -261,6 +269,7 @@ class Steps:
     minus: FloatArray
     places: IntArray
     ends: IntArray
+    reach: FloatArray
 
     @classmethod
     def about(cls, at: FloatArray, n_free: int, size: FloatArray, inward: FloatArray, within: BoolArray) -> Steps:
@@ -276,7 +285,7 @@ class Steps:
         plus[within[moved] & (at[moved] + plus > 1.0)] = 0.0
         minus[within[moved] & (at[moved] - minus < 0.0)] = 0.0
         taken = np.concatenate([plus, minus]) > 0.0
-        return cls(moved, plus, minus, np.where(taken, np.cumsum(taken), 0), ends)
+        return cls(moved, plus, minus, np.where(taken, np.cumsum(taken), 0), ends, np.ones(len(size)))
 
     def columns(self, at: FloatArray) -> FloatArray:
         """Places to simulate at, (n_names, n_places): as it is, then every step taken."""
@@ -284,6 +293,25 @@ class Steps:
         for by, places in zip((self.plus, -self.minus), np.split(self.places, 2), strict=True):
             found[self.moved, places] += by
         return found
+
+    def reaching(self, at: FloatArray, runs: FloatArray, simulated: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Residuals at ``columns`` (n_residuals, n_places), with larger steps of what has one side only and does
+        nothing over a typical one.
+
+        simulated  residuals (n_residuals, k) at places (n_names, k)
+        """
+        first, places = len(at) - len(self.reach), np.maximum(*np.split(self.places, 2))
+        for size in FURTHER:
+            steps = first + self.ends
+            still = steps[(places[steps] > 0) & np.all(runs[:, places[steps]] == runs[:, :1], axis=0)]
+            if not len(still):
+                break
+            larger = size / self.reach[still - first]
+            self.plus[still] = np.minimum(larger * self.plus[still], 1.0 - at[still])
+            self.minus[still] = np.minimum(larger * self.minus[still], at[still])
+            self.reach[still - first] = size
+            runs[:, places[still]] = simulated(self.columns(at)[:, places[still]])
+        return runs
 
     def without_lost(self, runs: FloatArray) -> FloatArray:
         """Residuals there (n_residuals, n_places); a run that diverged says nothing: its side is left out."""
@@ -332,6 +360,7 @@ def linearise(
     if problem is not own and not np.isfinite(runs[:, 0]).all():  # the other method diverges here
         problem = own
         runs = problem.residuals(steps.columns(at)).T
+    runs = steps.reaching(at, runs, lambda places: problem.residuals(places).T)
     values = bench.noise.apply(steps.without_lost(runs), out=runs)
     slopes = steps.slopes(values)
     residual = values[:, 0] if problem is own else bench.noise.apply(own.residuals(at[:, None])[0])
@@ -372,6 +401,7 @@ def linearise(
         small=small,
         tiny=tiny,
         share=np.linalg.norm(signature, axis=0) / np.maximum(length, 1e-300),
+        reach={wanted[i]: float(steps.reach[i]) for i in ends},
         noise=left[:, 0] - every @ (every.T @ left[:, 0]),
         wander=left[:, 1 + n_moved :],
         blocks=blocks,
