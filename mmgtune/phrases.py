@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 LARGE = 10.0
@@ -73,6 +74,11 @@ def listed(words: Sequence[str], most: int | None = None) -> str:
     if most is not None and len(words) > most:
         words = [*words[: most - 1], f"{len(words) - most + 1} more"]
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def on_compass(angle: float) -> str:
+    """A direction [rad] in whole degrees from north, 0 to 359: "0°", never "360°"."""
+    return f"{round(math.degrees(angle)) % 360}°"
 
 
 def aboard(ahead: float, across: float, digits: int = 3) -> str:

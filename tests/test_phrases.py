@@ -1,8 +1,10 @@
 """Words put together as in a sentence."""
 
+import math
+
 import pytest
 
-from mmgtune.phrases import aboard, figures
+from mmgtune.phrases import aboard, figures, on_compass
 
 
 @pytest.mark.parametrize(
@@ -28,3 +30,10 @@ def test_numbers_have_no_power_of_ten(value, digits, said):
 def test_a_place_far_off_is_told_in_metres():
     """ "About 1.1e+02 m aft" was said of an antenna."""
     assert aboard(-114.7, 0.4913, 2) == "110 m aft and 0.49 m to starboard"
+
+
+@pytest.mark.parametrize(
+    ("degrees", "said"), [(-0.3, "0°"), (359.7, "0°"), (-90.0, "270°"), (42.6, "43°")]
+)
+def test_north_is_0_and_never_360(degrees, said):
+    assert on_compass(math.radians(degrees)) == said

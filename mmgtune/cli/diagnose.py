@@ -175,7 +175,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     lines += [f"verdict: {result.verdict}", result.sentence()]
     if result.record:
         lines.append(result.record.sentence)
-    lines += [trace.told("another" if k else "one more") for k, trace in enumerate(result.traces)]
+    first = "one more" if result.causes else "a cause"
+    lines += [trace.told("another" if k else first) for k, trace in enumerate(result.traces)]
     where = f"J held out ({result.gain.words}; {result.gain.method})"
     named = result.causes and result.verdict != "unexplained" and not result.interrupted
     if named and before is not None and after is not None:

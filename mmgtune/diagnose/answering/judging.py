@@ -121,7 +121,8 @@ class Judge:
             for least, brought in self._least(found):
                 other = self._judged(least, brought)
                 if other.names_causes if least.causes else other.verdict == "none":
-                    result, found = other, least
+                    certain = self._of_a_run(result, found, least)
+                    result, found = replace(other, traces=(*other.traces, *certain)), least
                     break
         if result.verdict == "unexplained" and not result.misses_test:
             result = replace(result, whereabouts=error_of(self.bench, found, self.before, result.leftover))
@@ -158,6 +159,17 @@ class Judge:
                 yield alone, [Contribution(1.0, unlike_any=unlike)]
                 break
         yield with_only(self.bench, found, []), []
+
+    def _of_a_run(self, result: Diagnosis, found: Found, least: Found) -> list[Trace]:
+        """Of causes that are left out as what they remove may be nothing, those of which a run has a value for certain:
+        a clock that is late in one of eight, as traces."""
+        runs = {cause.tag: cause.runs for cause in result.causes if cause.runs and not cause.runs.in_none}
+        gone = [
+            (cause, brings)
+            for cause, (tag, brings) in zip(found.causes, result.contributions, strict=True)
+            if cause.by and tag in runs and cause not in least.causes
+        ]
+        return [_trace(self.bench, Aside.of(self.bench, found, cause, brings)) for cause, brings in gone]
 
     def _without_doubtful(
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]

@@ -172,7 +172,8 @@ def _of_none(answer: Answer) -> Said:
         return Said("No cause shows.", left_open)
     alone = ", ".join(dict.fromkeys(one.cause.tag for one in answer.traces if one.contribution.harmful))
     like_hull = listed([one.cause.tag for one in answer.traces if one.contribution.like_hull])
-    none = f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
+    shows = "none of the causes that were looked for is more than a trace" if answer.traces else _NO_CAUSE
+    none = f"what alone shows, {alone}, tells held-out trials worse" if alone else shows
     if like_hull:
         none = f"what alone shows, {like_hull}, a hull further off than believed would explain as well"
     few = ""
@@ -226,6 +227,7 @@ def _times(ratio: float) -> str:
 
 
 _CANNOT_NAME = "Something is wrong that this program cannot name."
+_NO_CAUSE = "no cause that was looked for shows"
 _NOT_KNOWN = " that this program does not know"
 
 

@@ -15,7 +15,7 @@ from ...arrays import FloatArray
 from ...documents import finite
 from ...effects import Effect, Visited
 from ...fitting.box import AT
-from ...phrases import listed
+from ...phrases import listed, on_compass
 from ...trial import Trial, visited_by
 from ...units import DIMENSIONLESS, NORMAL_95
 from ..bench.runs import FEWEST_GROUPS, IN_WORDS, groups_of, name_of
@@ -323,7 +323,7 @@ class ByRun:
         """The directions of the values of some groups, in words; "" for what has none."""
         sense = "towards" if self.effect.told_as else "from"
         if self._much_alike:
-            return f", {sense} {round(math.degrees(np.angle(self._vectors.mean()))) % 360}°"
+            return f", {sense} {on_compass(np.angle(self._vectors.mean()))}"
         sector = self._sector(shown)
         if sector is None:
             return ""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from ...effects import Effect
 from ...effects.signs import UNLIMITED
+from ...phrases import on_compass
 from ...units import DIMENSIONLESS, read_as
 from .intervals import Estimate
 
@@ -87,5 +88,5 @@ def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> di
             )
             found[size] = quantity(length, error, effect.parameters[first].unit)
             if length > error:  # else it may be any
-                found[direction] = f"{math.degrees(math.atan2(east.value, north.value)) % 360.0:.0f}°"
+                found[direction] = on_compass(math.atan2(east.value, north.value))
     return found

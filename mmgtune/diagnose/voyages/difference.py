@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ...arrays import FloatArray
+from ...phrases import on_compass
 from ...units import NORMAL_95
 from ..signatures.wording import quantity
 
@@ -117,9 +118,9 @@ def _current(one: Difference) -> str:
         return f"The current differed from voyage to voyage: {speed.min():.2g} to {speed.max():.2g} m/s."
     if one.pattern == "one" and one.common:
         (north, e_north), (east, e_east) = one.common
-        towards = math.degrees(math.atan2(east, north)) % 360.0
+        where = on_compass(math.atan2(east, north))
         size = quantity(math.hypot(north, east), NORMAL_95 * max(e_north, e_east), "m/s")
-        return f"One current sets through all voyages, of {size} towards {towards:.0f}°: none shows to differ."
+        return f"One current sets through all voyages, of {size} towards {where}: none shows to differ."
     return "No current shows in these voyages beyond what was measured."
 
 
