@@ -32,8 +32,6 @@ def test_a_place_far_off_is_told_in_metres():
     assert aboard(-114.7, 0.4913, 2) == "110 m aft and 0.49 m to starboard"
 
 
-@pytest.mark.parametrize(
-    ("degrees", "said"), [(-0.3, "0°"), (359.7, "0°"), (-90.0, "270°"), (42.6, "43°")]
-)
+@pytest.mark.parametrize(("degrees", "said"), [(-0.3, "0°"), (359.7, "0°"), (-90.0, "270°"), (42.6, "43°")])
 def test_north_is_0_and_never_360(degrees, said):
     assert on_compass(math.radians(degrees)) == said

@@ -13,6 +13,11 @@ from .effect import ActuatorEffect, Parameter
 from .signs import UNLIMITED, each
 
 
+SLOW_GEAR = 60.0
+"""Time [s/rad] of a rudder at less than half the rate of 65 deg in 28 s, which SOLAS II-1/29 asks of any gear: that of
+a tug is no faster than a tanker's, for all that she sails her length in a few seconds."""
+
+
 class SteeringLag(NamedTuple):
     """See the parameters below."""
 
@@ -60,9 +65,10 @@ def _rate(words: str) -> Parameter:
         null=float("inf"),
         low=0.0,
         chart="reciprocal",
-        bounds=lambda ship: (0.0, 4.0 * ship.L / ship.U),
+        bounds=lambda ship: (0.0, max(4.0 * ship.L / ship.U, SLOW_GEAR)),
         typical=lambda ship: 0.9 * ship.L / ship.U,
-        bounds_source="a rudder that takes the time of a ship length for 15 deg",
+        bounds_source="a rudder that takes the time of a ship length for 15 deg, or moves at less than half the rate "
+        "that rules ask of any gear (65 deg in 28 s)",
     )
 
 

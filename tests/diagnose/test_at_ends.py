@@ -63,7 +63,11 @@ def test_causes_beside_which_many_are_at_an_end_are_doubted(of_logs, brought, wh
     left = SimpleNamespace(unknown=0.0, structured=False)
     known = {"_told_by_none": False, "_excused_by_gusts": False, "_bent": "", "contributions": contributions}
     known |= {"causes": causes, "gain": gain, "leftover": left, "_n_terms": 1, "_faint": False}
-    assert belief_with(**known, ends=AtEnds((), NAMES[:4], len(NAMES))).unclear == why
+    ends = AtEnds((), NAMES[:4], len(NAMES))
+    assert belief_with(**known, ends=ends, explained_share=0.999).unclear == why
+    gain.share_removed = 0.99  # all of it, on other runs too: a wind of 9 m/s, in which formulas are tuned a little off
+    assert belief_with(**known, ends=ends, explained_share=0.999).unclear == ""
+    assert belief_with(**known, ends=ends, explained_share=0.99).unclear == why
 
 
 @pytest.mark.parametrize(("formulas", "brought"), [(8, 2), (8, 1), (0, 2)])

@@ -26,6 +26,13 @@ something of a shape is left besides."""
 OF_ALL = 0.995
 """Share of that from which a single cause that leaves nothing but noise is not refuted by runs left out in turn."""
 
+OF_THE_NOISE = 0.03
+"""Variance beyond noise, as a share of it, that may be how well that of the noise is known: beside an error that is as
+small, the share that a cause leaves of it tells nothing."""
+
+OF_FEW = 3.0
+"""Error of a run that is left out, in deviations of the noise, up to which too few others may be the reason then."""
+
 ALL, ALL_HELD_OUT = 0.998, 0.98
 """Share of the error above noise from which it counts as all of it, and that share on held-out trials."""
 
@@ -126,7 +133,7 @@ class Belief:
             return "it leaves far more than noise, and more than gusts of such a wind, or groups of such waves, would"
         if why := self._bent:
             return why
-        if self.ends and self.ends.unlike and brought and not all(one.of_logs for one in self.causes):
+        if self.ends and self.ends.unlike and brought and not self._stands_beside_all:
             return f"beside {'it' if len(brought) == 1 else 'them'} {self.ends.words}"
         of_formulas = self.ends is not None and self.ends.from_formulas and len(brought) > 1
         if of_formulas and any(one.effect and one.effect.one_of_many for one in self.causes):
@@ -178,6 +185,11 @@ class Belief:
         doubted = self.gain.worse or self.differs_by_run or self._misses_each
         untold = self.gain.remains and (self.rest >= NOTICED or doubted)
         return untold or bool(self.unclear) or self._mostly_left or self._of_a_misread_log
+
+    @property
+    def _stands_beside_all(self) -> bool:
+        """Whether causes are what they are beside any hull: errors of logs, or such as tell all of the error."""
+        return all(one.of_logs for one in self.causes) or self.explains_all
 
     @property
     def _n_terms(self) -> int:
@@ -258,11 +270,14 @@ class Belief:
 
         A single cause that leaves nothing but noise of all runs together is not refuted by it, unless the logged inputs
         leave much open: few runs leave some coefficients open, and no cause that stood for another was seen to do that.
+        What inputs leave open shows in all states; an error in the log of a single one does not hide in it.
         """
         if self.gain.held_out != "each" or self.gain.share_removed < AT_ALL:
             return False
-        alone = len(self.contributions) == 1 and not self.leaves_open
-        if alone and self.explained_share >= OF_ALL and self.rest < NOTICED:
+        hidden = self.leaves_open and not all(cause.of_one_log for cause in self.causes)
+        alone = len(self.contributions) == 1 and not hidden
+        like_noise = self.rest < OF_THE_NOISE and self.gain.left < OF_FEW and not self.leftover.structured
+        if alone and self.rest < NOTICED and (self.explained_share >= OF_ALL or like_noise):
             return False
         return self.gain.left**2 > BEYOND_OPEN * (1.0 + self.leftover.left_open)
 
