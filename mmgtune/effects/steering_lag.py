@@ -12,7 +12,6 @@ from ..physics.quantities import Lanes
 from .effect import ActuatorEffect, Parameter
 from .signs import UNLIMITED, each
 
-
 SLOW_GEAR = 60.0
 """Time [s/rad] of a rudder at less than half the rate of 65 deg in 28 s, which SOLAS II-1/29 asks of any gear: that of
 a tug is no faster than a tanker's, for all that she sails her length in a few seconds."""
