@@ -79,6 +79,8 @@ EFFECT = SensorEffect(
     pivots={"time": lambda ship: ship.L / ship.U},
     variants=(("factor",), ("factor", "curve")),
     besides=("curve",),
+    varies=("factor",),
+    subject="factor of the rate gyro",
     unvisited=unvisited,
     sentence=_sentence,
 )

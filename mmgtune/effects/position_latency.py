@@ -106,5 +106,6 @@ EFFECT = FilterEffect(
         "with_velocity": _delay("position and velocity over ground are"),
     },
     variants=(("seconds",), ("with_velocity",)),
+    varies=("seconds", "with_velocity"),
     sentence=_sentence,
 )

@@ -21,7 +21,7 @@ from mmgtune.diagnose.signatures.wording import quantity, range_in_words
 from mmgtune.effects import find_effect
 from mmgtune.effects.signs import UNLIMITED
 from mmgtune.motions import simulate_trials
-from mmgtune.profile import load_profile, parse_profile
+from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.report import render
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
@@ -467,3 +467,29 @@ def test_a_clock_that_is_late_in_one_run_is_a_trace_where_it_is_next_to_nothing(
     assert late.value == pytest.approx(2.0, abs=2.0 * late.stderr)
     told = summary(result, "run", report=False)
     assert "There is a trace of a cause, left out as it changes nothing that would be noticed: the clock" in told
+
+
+@pytest.mark.daily("gyro-scale")
+@pytest.mark.parametrize(
+    ("tag", "name", "value", "said"),
+    [
+        ("position-latency", "seconds", 3.0, "The latency of the receiver differed from run to run: "),
+        ("gyro-scale", "factor", 0.9, "The factor of the rate gyro differed from run to run: "),
+        ("speed-scale", "factor", 1.1, "The factor of the speed log differed from run to run: "),
+    ],
+)
+def test_a_sensor_that_was_another_one_in_one_run(tag, name, value, said):
+    """A receiver 3 s late in one run was a compass 2.5 deg off there."""
+    profile, rng = load_profile("suzaku"), np.random.default_rng(3)
+    trials = [load_trials("suzaku").trials[one] for one in ("turn_p35", "turn_m20", "zigzag_10", "zigzag_20")]
+    ships = [profile, with_effects(profile, {tag: {name: value}}, "made"), profile, profile]
+    sailed = [*(simulate_trials(ship, [trial])[0] for ship, trial in zip(ships, trials, strict=True))]
+    made = [logged(*pair, rng) for pair in zip(trials, sailed, strict=True)]
+    options = DiagnoseOptions(effects=(tag, "heading-bias"), targets=("hull.R_0", "wake.w_P0"))
+    result = diagnose("suzaku", made, options)
+    assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", [tag]), result.sentence()
+    runs = result.causes[0].runs
+    assert result.sentence().startswith(said)
+    assert "in turn_m20, and none for certain in the other 3" in result.sentence()
+    found = runs.values[runs.groups.index("trial:turn_m20")][name]
+    assert found.value == pytest.approx(value, abs=3.0 * found.stderr)

@@ -10,8 +10,8 @@ from mmgtune.diagnose.answering.jumped import beginnings_in_words, from_the_trac
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
 from mmgtune.report import render
-from mmgtune.trial import TrialSet, check_trial, load_trials
-from mmgtune.trial.checks.position_jumps import first_positions_off
+from mmgtune.trial import Trial, TrialSet, check_trial, load_trials
+from mmgtune.trial.checks.position_jumps import first_positions_off, position_jumps
 from mmgtune.trial.pieces import begun_at
 from tests.hidden.plant import simulate, write
 from tests.trial.made import made
@@ -51,6 +51,16 @@ def test_a_run_is_divided_where_its_position_jumps(sailed):
     for rows in ([row], [1], range(1, whole.n_samples, 2)):  # of pieces too short for a trial none is left
         pieces = sailed.divided({id: rows})
         assert sorted([*pieces.tune, *pieces.test]) == sorted(pieces.trials)
+
+
+@pytest.mark.parametrize(("n_samples", "seen"), [(65, True), (32, True), (29, False)])
+def test_a_jump_is_seen_in_a_run_of_a_minute(sailed, n_samples, seen):
+    """Nothing was looked at below 72 samples a second: three jumps by 9 m were "noise that fades slowly"."""
+    whole = with_jump(sailed, "turn_p20", (n_samples // 2, 16.0)).trials["turn_p20"]
+    rows = slice(n_samples)
+    columns = {name: getattr(whole, name)[rows] for name in ("x", "y", "psi", "u", "v_m", "r", "n", "delta")}
+    short = Trial(whole.id, whole.ship, whole.manoeuvre, whole.source, whole.t[rows], **columns)
+    assert [row for row, _ in position_jumps(short)] == ([n_samples // 2] if seen else [])
 
 
 def test_a_receiver_that_jumps_all_the_time_is_left(sailed):

@@ -19,6 +19,8 @@ SPAN = 12.0
 """Time [s] on each side of a step over which the track has to lie on one line and then on another."""
 FEWEST, MOST = 5, 100
 """Samples of such a line."""
+LINES = 6
+"""Lines that a record holds at least."""
 BEYOND = 9.0
 """How many times the usual misfit of two neighbouring lines a step exceeds."""
 FIRST, AT_ONCE = 4.0, 0.5
@@ -81,8 +83,9 @@ def first_positions_off(trial: Trial) -> tuple[int, float] | None:
 
 
 def _samples(trial: Trial) -> int:
-    """Samples of a line."""
-    return int(np.clip(np.ceil(SPAN / np.median(np.diff(trial.t))), FEWEST, MOST))
+    """Samples of a line: fewer where the record is short."""
+    long = int(np.clip(np.ceil(SPAN / np.median(np.diff(trial.t))), FEWEST, MOST))
+    return max(min(long, trial.n_samples // LINES), FEWEST)
 
 
 def _fast(trial: Trial) -> float:
@@ -93,7 +96,7 @@ def _fast(trial: Trial) -> float:
 def _without_way(trial: Trial, n: int) -> list[FloatArray] | None:
     """Positions north and east (n_samples,) less the way that the velocities make; None where the record is shorter
     than six lines of n samples, or says nothing of its velocities."""
-    if trial.n_samples < 6 * n:
+    if trial.n_samples < LINES * n:
         return None
     made = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
     ways = bridged(trial.t[:-1], *made)
