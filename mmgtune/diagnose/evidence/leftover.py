@@ -283,8 +283,9 @@ def _slow(bench: Workbench, name: str, level: float, excess: float) -> tuple[flo
 
 
 def residuals_of(bench: Workbench, point: Point) -> list[FloatArray]:
-    """Simulated less measured by trial, (n_samples, 6), in SI units; NaN in gaps."""
-    return [own - trial.motion for own, trial in zip(motions_of(bench, point), bench.trials, strict=True)]
+    """Simulated less measured by trial, (n_samples, 6), in SI units; NaN in gaps, and in channels that do not count."""
+    counts = np.where([name in bench.channels for name in STATES], 0.0, np.nan)
+    return [own - trial.motion + counts for own, trial in zip(motions_of(bench, point), bench.trials, strict=True)]
 
 
 def motions_of(bench: Workbench, point: Point) -> list[FloatArray]:
