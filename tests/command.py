@@ -110,7 +110,7 @@ def typed(*arguments: str | Path) -> Ended:
     """Run ``mmgtune`` in this process and folder, which takes a second less; for what does not end in a signal."""
     from mmgtune.cli import main
 
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     before = sys.argv
     sys.argv = ["mmgtune", *map(str, arguments)]
     out, err = io.StringIO(), io.StringIO()

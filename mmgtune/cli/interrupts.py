@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: whenever they come, exit code 130 or 143 and one line that says what is saved.
+"""Ctrl-C, SIGTERM and SIGHUP: whenever they come, exit code 130, 143 or 129 and one line that says what is saved.
 
 A handler ends the process itself.  An exception raised by one may come anywhere, in a destructor too, and be lost.
 """
@@ -19,14 +19,17 @@ from .output import harmless
 
 NAMES = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 CODES = {signal.SIGINT: ExitCode.INTERRUPTED, signal.SIGTERM: ExitCode.TERMINATED}
+if hasattr(signal, "SIGHUP"):  # which Windows lacks
+    NAMES[signal.SIGHUP], CODES[signal.SIGHUP] = "hung up", ExitCode.HUNG_UP
 
 Handler = Callable[[int, Any], None]
 
 
 def handle(handler: Handler) -> None:
-    """Have a function called on Ctrl-C and SIGTERM from now on."""
+    """Have a function called on Ctrl-C, SIGTERM and SIGHUP from now on; what nohup ignores stays ignored."""
     for number in NAMES:
-        signal.signal(number, handler)
+        if number in (signal.SIGINT, signal.SIGTERM) or signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, handler)
 
 
 def stop_at_once(words: str) -> Handler:

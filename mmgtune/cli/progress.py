@@ -1,4 +1,4 @@
-"""Progress on stderr, and Ctrl-C or SIGTERM: once to finish with the best so far, twice to stop at once."""
+"""Progress on stderr, and Ctrl-C, SIGTERM or SIGHUP: once to finish with the best so far, twice to stop at once."""
 
 from __future__ import annotations
 

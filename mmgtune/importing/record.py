@@ -16,7 +16,7 @@ from ..phrases import listed
 from ..trial.headings import unwrapped
 from .cells.degrees import DDMM
 from .cells.digits import print_step, within_digits
-from .cells.headers import unit_in
+from .cells.headers import PERCENT, in_percent, unit_in
 from .cells.seldom import is_seldom
 from .formats.table import TIME, Table
 from .maps.mapping import LogMap, Source, TimeSource
@@ -162,6 +162,12 @@ def unit_of(name: str, table: Table, source: Source | TimeSource, target: str, v
         what = f"the map says '{header}' is in {stated}, its header says {printed}"
         fix = f'correct the map\'s unit or remove it; if the header is wrong, add header_says = "{printed}"'
         raise LogError(Problem(what, place, "one of them is wrong", fix))
+    if in_percent(header, table.below.get(name, "")) and source.scale == 1.0 and source.header_says != PERCENT:
+        what = f"'{header}' is in percent, as its header says{f', and the map says {stated}' if stated else ''}"
+        unit = stated or printed or next(iter(known))
+        why = "neither says what 100 % are"
+        fix = f'say scale, a hundredth of its {unit} at 100 %; if the header is wrong, add header_says = "{PERCENT}"'
+        raise LogError(Problem(what, place, why, fix))
     if stated or printed:
         return str(stated or printed)
     finite = values[np.isfinite(values)]

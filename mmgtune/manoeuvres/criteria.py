@@ -149,4 +149,6 @@ def _criterion(name: str, value: float | None, limit: float, unit: str, part: st
     """A criterion with its verdict; ``why`` says why it cannot be given."""
     if value is None:
         return Criterion(name, None, limit, unit, None, SOURCE + part, why or "the record does not reach it")
+    if unit == "L" and value <= 0.0 and not why:
+        return Criterion(name, value, limit, unit, False, SOURCE + part, "the ship went to the other side or astern")
     return Criterion(name, value, limit, unit, None if why else value <= limit, SOURCE + part, why)

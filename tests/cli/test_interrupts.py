@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM at any moment: an exit code of their own, one line, and never a traceback."""
+"""Ctrl-C, SIGTERM and SIGHUP at any moment: an exit code of their own, one line, and never a traceback."""
 
 import signal
 import subprocess
@@ -27,6 +27,7 @@ class Gone:
         sent()
 
 sys.meta_path.insert(0, Watch())
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # whatever the tests were started by
 sys.argv = ["mmgtune", *{arguments!r}]
 from mmgtune.__main__ import main
 {before}
@@ -41,15 +42,24 @@ def ended(folder, *arguments, number=signal.SIGINT, name="", when="sent()", befo
 
 
 @pytest.mark.daily("pyarrow", "cli")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.parametrize("name", ["mmgtune.cli", "typer", "mmgtune.trial", "pyarrow"])
 def test_at_start(tmp_path, name, number):
     found = ended(tmp_path, "trials", "check", "suzaku", number=number, name=name)
     assert found.returncode == 128 + number
-    word = "interrupted: " if number == signal.SIGINT else "terminated: "
-    assert found.stderr.startswith(word)
+    words = {signal.SIGINT: "interrupted: ", signal.SIGTERM: "terminated: ", signal.SIGHUP: "hung up: "}
+    assert found.stderr.startswith(words[number])
     assert len(found.stderr.splitlines()) == 1
     assert found.stdout == ""
+
+
+def test_what_nohup_ignores_is_ignored(tmp_path):
+    """What was done in a session that was lost ended there; under nohup it goes on."""
+    before = "signal.signal(signal.SIGHUP, signal.SIG_IGN)"
+    found = ended(tmp_path, "trials", "check", "suzaku", number=signal.SIGHUP, name="pyarrow", before=before)
+    assert found.returncode == 0
+    assert "hung up" not in found.stderr
+    assert found.stdout
 
 
 def test_in_a_destructor(tmp_path):
@@ -97,8 +107,8 @@ def test_at_exit(tmp_path):
 FEW = ("--targets", "R_0,w_P0", "--method", "least-squares", "--starts", "1", "--no-report", "--quiet", "--out", "run")
 
 
-@pytest.mark.daily("[2]")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.daily("[1]")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_when_the_result_is_written(tmp_path, number):
     """What is said then names the folder with the results."""
     before = "import mmgtune.cli.sweep as sweep; sweep.summary = lambda *_, **__: sent()"

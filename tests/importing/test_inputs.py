@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmgtune.importing import import_logs, parse_map
+from mmgtune.importing import import_logs, parse_map, propose_map
+from mmgtune.importing.proposing.words import of_starboard
 from mmgtune.trial import check_trial, read_trial
 from mmgtune.units import DEG
 from tests.importing.made import MAP, imported, logged, refusal, said, turn, write_csv
@@ -114,7 +115,8 @@ def test_checks_go_over_every_input() -> None:
 NEW = """
 from mmgtune.inputs import INPUTS, Input
 INPUTS["delta_bow"] = Input("delta_bow", "rad", "bow rudder angle", "rudder")
-from mmgtune.importing import import_logs, parse_map
+from mmgtune.importing import import_logs, parse_map, propose_map
+from mmgtune.importing.proposing.words import of_starboard
 text, log = open("map.toml").read(), "log.csv"
 trial, = import_logs([log], parse_map(text), "out").trials
 print(float(trial.extra["delta_bow"].max()), [*trial.extra])
@@ -133,3 +135,54 @@ def test_an_input_is_one_entry(tmp_path: Path) -> None:
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.split(" ", 1)[1].strip() == "['delta_bow']"
     assert float(ran.stdout.split()[0]) == pytest.approx(float(turn().delta.max()))
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "hundred"),
+    [
+        ("RPM [%]", "n", 120.0),
+        ("Drehzahl (% MCR)", "n", 120.0),
+        ("shaft speed %", "n", 120.0),
+        ("Rudder [%]", "delta", 35.0),
+        ("rudder_pct", "delta", 35.0),
+    ],
+)
+def test_what_is_in_percent_is_asked_what_a_hundred_are(
+    tmp_path: Path, name: str, quantity: str, hundred: float
+) -> None:
+    """Revolutions of 89 % of the largest were imported as 89 rpm without a word."""
+    own = {"n": "shaft", "delta": "rudder"}[quantity]
+    columns = {name if one == own else one: values for one, values in logged(turn()).items()}
+    columns[name] = 100.0 * columns[name] / hundred
+    log = write_csv(tmp_path / "log.csv", columns)
+    proposal = propose_map([log])
+    assert proposal.asks == (f"columns.{quantity}.scale",)
+    assert f"% of '{name}'?" in proposal.text
+    question = next(line for line in proposal.text.splitlines() if f"% of '{name}'?" in line)
+    before, _, rest = question.partition("scale = ")
+    answered = f"{before}scale = {hundred / 100.0}{rest[rest.index('?' + chr(34)) + 2 :]}"
+    trial = imported(log, proposal.text.replace(question, answered))
+    assert getattr(trial, quantity) == pytest.approx(getattr(turn(), quantity), abs=1e-6)
+    by_hand = MAP.replace(f'column = "{own}"', f'column = "{name}"')
+    assert "is in percent, as its header says" in refusal(lambda: imported(log, by_hand))
+    beside = 'unit = "rpm"' if quantity == "n" else 'unit = "deg"'
+    imported(log, by_hand.replace(beside, f'{beside}, header_says = "%"'))
+
+
+@pytest.mark.parametrize(
+    ("port", "starboard"), [("Rudder P [deg]", "Rudder S [deg]"), ("Ruder BB [deg]", "Ruder StB [deg]")]
+)
+def test_two_rudders_are_told_by_their_letters(tmp_path: Path, port: str, starboard: str) -> None:
+    """That to starboard was taken for the rudder, and the other one asked about."""
+    columns = logged(turn())
+    rudder = columns.pop("rudder")
+    log = write_csv(tmp_path / "log.csv", columns | {port: rudder + 1.0, starboard: rudder})
+    proposal = propose_map([log])
+    assert {name: guess.column for name, guess in proposal.guesses.items() if name.startswith("delta")} == {
+        "delta_port": len(columns),
+        "delta_stbd": len(columns) + 1,
+    }
+
+
+def test_an_s_stands_for_starboard_beside_a_p_alone() -> None:
+    assert of_starboard(["rudder s", "n_p", "n_s"], ["delta", "n_port", "n"]) == [2]

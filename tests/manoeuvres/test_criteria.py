@@ -133,3 +133,10 @@ def test_a_stop_is_judged_by_its_track_reach(reach, passed):
     assert (found.name, found.unit, found.passed) == ("track reach", "L", passed)
     assert found.source == "IMO MSC.137(76), 5.3.4"
     assert check_stopping(replace(stop, approach_speed=0.5 * U), L, U)[0].passed is None
+
+
+def test_a_ship_that_turns_away_from_her_rudder_fails():
+    """A tactical diameter of -0.85 L was below 5 L, and passed."""
+    advance, diameter = check_turning(replace(TURN, tactical_diameter=-0.85 * L), L, U)
+    assert (advance.passed, diameter.passed) == (True, False)
+    assert diameter.reason == "the ship went to the other side or astern"

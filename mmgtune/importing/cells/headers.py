@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from ...units import canonical, name_and_unit
@@ -14,6 +15,17 @@ def unit_in(header: str) -> str | None:
     """The unit in a header such as "u_velo [m/s]" or "speed (kn)"; None where it has none."""
     unit = name_and_unit(header, BRACKETS)[1]
     return canonical(unit) if unit else None
+
+
+PERCENT = "%"
+"""What a header says that is of a share of something, and what a map calls that."""
+
+_OF_A_SHARE = re.compile(r"%|\b(pct|percent|perc|prozent|procent|pourcent|pourcentage|porcentaje|por ?ciento)\b")
+
+
+def in_percent(header: str, below: str = "") -> bool:
+    """Whether a header, or what stands below it, says that a column is in percent of something."""
+    return bool(_OF_A_SHARE.search(f"{header[:200]} {below[:40]}".lower().replace("_", " ")))
 
 
 def bare(header: str) -> str:

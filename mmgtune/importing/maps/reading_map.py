@@ -18,6 +18,7 @@ from ...toml_reading import TomlReader, finite, named, toml_of
 from ...trial.metadata import antenna_of
 from ...trial.schema import COLUMNS, SOURCES, impossible, known_column
 from ..cells.degrees import DDMM
+from ..cells.headers import PERCENT
 from ..cells.position_parts import HEMISPHERES, PARTS
 from ..cells.time_parts import PARTS as TIME_PARTS
 from ..cells.time_parts import in_order
@@ -395,6 +396,8 @@ class _Reader(TomlReader):
         found, known = canonical(table.get(key)), dict.fromkeys(units.factors(target))
         if name in HEMISPHERES and key == "unit":
             known[DDMM] = None
+        if key == "header_says" and found == PERCENT:
+            return found
         if found is None or found in known:
             return found
         of = f"unit of {'time' if name == 'time' else repr(name)}"

@@ -116,7 +116,8 @@ def _rudder(
         confidence = ASKED
     if remark:
         words.append(remark)
-    find.add(Guess(name, column, own, tuple(words), confidence))
+    asked, why = find.scale_asked(column, own["unit"])
+    find.add(Guess(name, column, own | asked, (*words, *why), ASKED if asked else confidence))
 
 
 def propeller(find: Finder) -> None:
@@ -227,6 +228,8 @@ def _shaft(
                 f"but she makes some {fits[said]:.2g} of her length with each turn then, ships {WAY[0]:g} to "
                 f"{WAY[1]:g}: is it of an engine before a gear?"
             )
+    elif column in find.in_percent:
+        unit = "rpm"
     elif seen and sizes[seen] < np.log(12.0) and (named or WAY[0] <= fits[seen] <= WAY[1]):
         unit = seen
         ships = f"ships {WAY[0]:g} to {WAY[1]:g}"
@@ -243,4 +246,5 @@ def _shaft(
     if rivals and confidence == LIKELY:
         words.append(f"{', '.join(find.shown(k) for k in rivals[:3])} might be it too")
     words.extend(remarks)
-    find.add(Guess(name, column, own, tuple(words), confidence))
+    asked, why = find.scale_asked(column, unit)
+    find.add(Guess(name, column, own | asked, (*words, *why), ASKED if asked else confidence))

@@ -10,11 +10,12 @@ import numpy as np
 
 from ... import units
 from ..cells.degrees import DDMM
+from ..cells.headers import in_percent
 from .clocks import Clock
-from .guess import LIKELY, SURE, Guess
+from .guess import LIKELY, MARK, SURE, Guess
 from .look import Look
 from .sampling import Sample
-from .words import numbered, ordered, plain, quantity_named, unit_named
+from .words import numbered, of_starboard, ordered, plain, quantity_named, unit_named
 
 MOST_LOGS = 8
 """Logs whose motion is looked at."""
@@ -54,11 +55,16 @@ class Finder:
         counted = numbered(self.first.names)
         # Of many columns called alike the name is that of the table.
         self.said = ["" if k in counted else quantity_named(name) for k, name in enumerate(shown)]
+        for k in of_starboard(self.first.names, self.said):
+            self.said[k] += "_stbd"
         # North and east by a letter each; alone, n is what propellers turn with.
         letters = {plain(name): k for k, name in enumerate(self.first.names)}
         if {"n", "e"} <= set(letters):
             self.said[letters["n"]], self.said[letters["e"]] = "x", "y"
         self.units_said = [unit_named(name, row) for name, row in zip(self.first.names, below, strict=True)]
+        self.in_percent = {
+            k for k, (name, row) in enumerate(zip(self.first.names, below, strict=True)) if in_percent(name, row)
+        }
         self.units_wrong: dict[int, str] = {}
         self.guesses: dict[str, Guess] = {}
         self.as_printed: dict[str, tuple[Guess, str]] = {}
@@ -94,6 +100,13 @@ class Finder:
         self.guesses[guess.quantity] = guess
         if guess.column is not None:
             self.used.add(guess.column)
+
+    def scale_asked(self, k: int, unit: str) -> tuple[dict[str, str], list[str]]:
+        """The question what 100 % are of a column that is in percent, and why it is asked; nothing of any other."""
+        if k not in self.in_percent:
+            return {}, []
+        question = f"{MARK} a hundredth of its {unit} at 100 %: how many {unit} are 100 % of {self.shown(k)}?"
+        return {"scale": question}, ["its name says percent"]
 
     def says_side(self, k: int) -> bool:
         """Whether the cells of a column say the side themselves."""

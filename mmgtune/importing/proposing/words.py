@@ -14,7 +14,7 @@ DATE, TIME, ROLL, ORDER, LOG_SPEED, OTHER = "date", "time", "roll", "order", "lo
 """What names may say besides quantities: OTHER is anything that no trial holds."""
 
 _PORT = r"\b(port|ps|p|bb|babord|backbord|bakboord|babor|left|links|gauche)\b|左"
-_STARBOARD = r"\b(st(a?r?)b(oar)?d|sb|stb|tribord|steuerbord|stuurboord|estribor|right|rechts|droite)\b|右"
+_STARBOARD = r"\b(st(a?r?)b(oar)?d|sb|st ?b|tribord|steuerbord|stuurboord|estribor|right|rechts|droite)\b|右"
 
 _STEERED = r"(rudder|rud|ruder|helm|roer|gouvern|timon|barre|rpm|speed|course|heading|kurs)"
 _TELEGRAPH = r"telegra(ph|f)|\beot\b|テレグラフ"
@@ -209,6 +209,26 @@ def quantity_named(name: str) -> str:
         port, starboard = (bool(side.search(text)) for side in _SIDES)
         if port != starboard:
             return f"{found}_{'port' if port else 'stbd'}"
+    return found
+
+
+def of_starboard(names: Sequence[str], said: Sequence[str]) -> list[int]:
+    """Which columns of a rudder or shaft are that to starboard, by an S where another of the same name has a P: alone
+    it may stand for anything.
+
+    said  what each name says, as ``quantity_named`` has it
+    """
+    to_port = {plain(name) for name, one in zip(names, said, strict=True) if one.endswith("_port")}
+    found = []
+    for k, (name, one) in enumerate(zip(names, said, strict=True)):
+        parts = plain(name).split()
+        twins = {
+            " ".join("p" if i == j else part for j, part in enumerate(parts))
+            for i in range(len(parts))
+            if parts[i] == "s"
+        }
+        if one in _DRIVES and twins & to_port:
+            found.append(k)
     return found
 
 
