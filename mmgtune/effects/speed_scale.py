@@ -86,6 +86,8 @@ EFFECT = SensorEffect(
     pivots={"pivot": lambda ship: ship.U},
     variants=(("factor",), ("both",), ("factor", "grows")),
     besides=("grows",),
+    varies=("factor",),
+    subject="factor of the speed log",
     unvisited=unvisited,
     sentence=_sentence,
 )

@@ -475,6 +475,7 @@ def test_a_clock_that_is_late_in_one_run_is_a_trace_where_it_is_next_to_nothing(
     [
         ("position-latency", "seconds", 3.0, "The latency of the receiver differed from run to run: "),
         ("gyro-scale", "factor", 0.9, "The factor of the rate gyro differed from run to run: "),
+        ("speed-scale", "factor", 1.1, "The factor of the speed log differed from run to run: "),
     ],
 )
 def test_a_sensor_that_was_another_one_in_one_run(tag, name, value, said):

@@ -1383,7 +1383,13 @@ def test_what_no_ship_has_is_said_where_that_decides(removed, of_hull, said):
 )
 def test_what_has_no_shape_and_is_next_to_nothing_may_be_noise(noticed, structured, chi2, may_be):
     judge = SimpleNamespace(before=SimpleNamespace(noticed=noticed, structured=structured))
-    assert Judge._may_be_noise(judge, SimpleNamespace(chi2=(chi2, 1.0))) is may_be
+    for runs, asked in (
+        (None, may_be),
+        (SimpleNamespace(in_none=False), may_be),
+        (SimpleNamespace(in_none=True), True),
+    ):
+        result = SimpleNamespace(chi2=(chi2, 1.0), causes=[SimpleNamespace(runs=runs)])
+        assert Judge._may_be_noise(judge, result) is asked  # of values that no run has for certain nothing is left
 
 
 @pytest.mark.parametrize(

@@ -146,9 +146,10 @@ class Judge:
 
     def _may_be_noise(self, result: Diagnosis) -> bool:
         """Whether what the re-tuned model leaves is next to nothing, or has no shape and is next to nothing beside
-        noise of the sensors that fades slowly."""
+        noise of the sensors that fades slowly; or no run has a value for certain of what was found beside it."""
         shapeless = not self.before.structured and result.chi2[0] < 1.0 + NOTICED
-        return shapeless or not self.before.noticed
+        in_no_run = all(cause.runs and cause.runs.in_none for cause in result.causes)
+        return shapeless or not self.before.noticed or in_no_run
 
     def _least(self, found: Found) -> Iterator[tuple[Found, list[Contribution]]]:
         """Of causes beside which the re-tuned model leaves noise alone the first without which mass or inertia would be
