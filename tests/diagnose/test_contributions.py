@@ -1178,6 +1178,8 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     seen.causes += (SimpleNamespace(tag="wind", runs="one each"),)
     seen.contributions += (("hull-term", None), ("wind", None))
     assert ", antenna + 2 times hull-term + wind of each run, removes" in saying.said(seen).why
+    seen.contributions += (("wind", None),)  # its speed, and how it turns
+    assert ", antenna + 2 times hull-term + wind of each run, removes" in saying.said(seen).why
     assert ": this sum stands for" in saying.said(seen).why
     seen.contributions = seen.contributions[:1]
     assert ", antenna, removes" in saying.said(seen).why

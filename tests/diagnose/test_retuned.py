@@ -135,7 +135,7 @@ def test_a_fouled_hull_is_told(tmp_path, hidden):
     ids=["far", "within its leeway", "not sure", "at a bound"],
 )
 def test_inertia_that_is_not_the_profile_s_is_told_though_it_is_no_target(after, stderr, told):
-    inertia = Retuned("particulars.k_zz_", "radius of gyration", "-", 0.25, after, stderr, believed=0.05)
+    inertia = Retuned("particulars.k_zz_", "radius of gyration, over L_pp", "-", 0.25, after, stderr, believed=0.05)
     said = weighed([moved(0.7, 0.01), inertia])
     assert said.startswith("The trials ask for radius of gyration (k_zz_) 14 ± 3 % above") == told
     assert (said == "") == (not told)

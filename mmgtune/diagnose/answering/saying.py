@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from ...phrases import LARGE, capital, figures, in_percent, listed, small
 from ...units import DEG
+from ..bench.hypotheses import n_terms
 from ..bench.of_hull import AS_WELL
 from ..causes.belief import MOSTLY, TOLD
 from ..evidence.leftover import OF_ANOTHER_FORM, change_in_words, in_words
@@ -240,9 +241,11 @@ def _of_few(answer: Answer) -> str:
 
 
 def _summed(answer: Answer) -> str:
-    """Causes of a sum by their tags: how many there are of one, and which have a value of each run."""
+    """Causes of a sum by their tags: how many there are of one that is of many, as terms of a hull are, and which have
+    a value of each run."""
     tags, by_run = [tag for tag, _ in answer.contributions], {cause.tag for cause in answer.causes if cause.runs}
-    several = {tag: f"{tags.count(tag)} times {tag}" if tags.count(tag) > 1 else tag for tag in tags}
+    many = {tag: n_terms([one for one in tags if one == tag]) for tag in tags}
+    several = {tag: f"{n} times {tag}" if n > 1 else tag for tag, n in many.items()}
     return " + ".join(words + (" of each run" if tag in by_run else "") for tag, words in several.items())
 
 

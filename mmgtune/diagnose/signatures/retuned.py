@@ -47,6 +47,9 @@ SURE = 3.0
 """Standard errors by which it must be further than that: a dozen targets are looked at."""
 
 
+OVER_LENGTH = ", over L_pp"
+"""What labels say of the unit: nothing of a change in percent."""
+
 BEYOND_LEEWAY = 2.0
 """Standard deviations of what is believed of mass, inertia and hull from which the trials contradict it."""
 
@@ -112,7 +115,7 @@ class Retuned:
 
     def _by(self, size: str) -> str:
         symbol, side = self.name.rpartition(".")[2], "above" if (self.change or 0.0) > 0.0 else "below"
-        return f"{self.label} ({symbol}) {size} {side} its pre-determined value"
+        return f"{self.label.removesuffix(OVER_LENGTH)} ({symbol}) {size} {side} its pre-determined value"
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -265,7 +268,7 @@ def _changes(moved: Sequence[Retuned]) -> str:
     """Targets that moved and by how much: "A (a) by +3 % and B (b) by -4 %"."""
     return listed(
         [
-            f"{one.label} ({one.name.rpartition('.')[2]}) by {100.0 * one.change:+.0f} %"
+            f"{one.label.removesuffix(OVER_LENGTH)} ({one.name.rpartition('.')[2]}) by {100.0 * one.change:+.0f} %"
             for one in moved
             if one.change is not None
         ]
