@@ -43,7 +43,7 @@ from mmgtune.fitting.box import Box
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, tuned
 from mmgtune.trial import load_trials, visited_by
-from mmgtune.units import DEG
+from mmgtune.units import DEG, NORMAL_95
 from tests.diagnose.beliefs import belief_with
 from tests.diagnose.sensors import logged
 from tests.hidden import plant
@@ -985,6 +985,16 @@ def test_an_interval_cut_off_beside_its_value_is_at_an_end(searched, at_end, rec
     bench = SimpleNamespace(sub_box=lambda _: box, parameter=lambda _: SimpleNamespace(null=0.0))
     point = SimpleNamespace(names=box.names, unit=np.array([z]))
     assert _in_units(bench, point, box.names, np.array([[deviation**2]]))["effects.a.b"].at_end is at_end
+
+
+@pytest.mark.parametrize(("deviation", "low"), [(0.0, None), (0.1, pytest.approx(1.0 / (0.1 * 50.0 * NORMAL_95)))])
+def test_a_side_without_a_limit_has_no_infinite_interval(deviation, low):
+    """Of a gear slow to port alone: "Out of range float values are not JSON compliant: inf"."""
+    box = Box(("effects.a.b",), np.array([0.0]), np.array([0.0]), np.array([50.0]), reciprocal=(0,))
+    bench = SimpleNamespace(sub_box=lambda _: box, parameter=lambda _: SimpleNamespace(null=0.0))
+    point = SimpleNamespace(names=box.names, unit=np.zeros(1))
+    one = _in_units(bench, point, box.names, np.array([[deviation**2]]))["effects.a.b"]
+    assert (one.value, one.low, one.high, one.stderr) == (np.inf, low, None, None)
 
 
 @pytest.mark.parametrize(

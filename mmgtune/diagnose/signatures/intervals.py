@@ -119,11 +119,11 @@ def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: 
             continue
         ends = np.repeat(unit[:, None], 2, axis=1)
         ends[i] = np.clip([unit[i] - NORMAL_95 * deviation[i], unit[i] + NORMAL_95 * deviation[i]], 0.0, 1.0)
-        low, high = sorted(float(end) for end in box.from_unit(ends)[i])
-        stderr = 0.5 * (high - low) / NORMAL_95 if np.isfinite(high) else None
+        low, high = (end if np.isfinite(end) else None for end in sorted(float(end) for end in box.from_unit(ends)[i]))
+        stderr = None if low is None or high is None else 0.5 * (high - low) / NORMAL_95
         width = float(np.ptp(ends[i]))
         at_end = width > 0.0 and float(np.min(np.abs(ends[i] - unit[i]))) < AT_END * width
-        found[name] = Estimate(name, float(values[i]), low, high if np.isfinite(high) else None, stderr, at_end=at_end)
+        found[name] = Estimate(name, float(values[i]), low, high, stderr, at_end=at_end)
     for name, spread_of_one in _apart(names, covariance).items():
         i = names.index(name)
         if i not in box.charted:
