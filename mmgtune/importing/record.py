@@ -162,9 +162,10 @@ def unit_of(name: str, table: Table, source: Source | TimeSource, target: str, v
         what = f"the map says '{header}' is in {stated}, its header says {printed}"
         fix = f'correct the map\'s unit or remove it; if the header is wrong, add header_says = "{printed}"'
         raise LogError(Problem(what, place, "one of them is wrong", fix))
-    if in_percent(header, table.below.get(name, "")) and source.scale == 1.0 and source.header_says != PERCENT:
+    shares = not printed and in_percent(header, table.below.get(name, ""))
+    if shares and source.scale == 1.0 and source.header_says != PERCENT:
         what = f"'{header}' is in percent, as its header says{f', and the map says {stated}' if stated else ''}"
-        unit = stated or printed or next(iter(known))
+        unit = stated or next(iter(known))
         why = "neither says what 100 % are"
         fix = f'say scale, a hundredth of its {unit} at 100 %; if the header is wrong, add header_says = "{PERCENT}"'
         raise LogError(Problem(what, place, why, fix))

@@ -184,5 +184,12 @@ def test_two_rudders_are_told_by_their_letters(tmp_path: Path, port: str, starbo
     }
 
 
+def test_a_header_with_a_unit_is_not_in_percent(tmp_path: Path) -> None:
+    columns = {"RPM (100 % = 120) [rpm]" if one == "shaft" else one: of for one, of in logged(turn()).items()}
+    proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert proposal.asks == ()
+    assert imported(tmp_path / "log.csv", proposal.text).n == pytest.approx(turn().n)
+
+
 def test_an_s_stands_for_starboard_beside_a_p_alone() -> None:
     assert of_starboard(["rudder s", "n_p", "n_s"], ["delta", "n_port", "n"]) == [2]

@@ -62,9 +62,8 @@ class Finder:
         if {"n", "e"} <= set(letters):
             self.said[letters["n"]], self.said[letters["e"]] = "x", "y"
         self.units_said = [unit_named(name, row) for name, row in zip(self.first.names, below, strict=True)]
-        self.in_percent = {
-            k for k, (name, row) in enumerate(zip(self.first.names, below, strict=True)) if in_percent(name, row)
-        }
+        said = zip(self.first.names, below, self.units_said, strict=True)
+        self.in_percent = {k for k, (name, row, unit) in enumerate(said) if not unit and in_percent(name, row)}
         self.units_wrong: dict[int, str] = {}
         self.guesses: dict[str, Guess] = {}
         self.as_printed: dict[str, tuple[Guess, str]] = {}
