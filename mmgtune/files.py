@@ -285,6 +285,11 @@ def _file_in(path: Path) -> Path | None:
         return None
 
 
+def _link_to_nothing(path: Path) -> Path | None:
+    """A path or the nearest folder above it that is a link to nothing; None where none is."""
+    return next((one for one in (path, *path.parents) if one.is_symlink() and not one.exists()), None)
+
+
 def _no_folder(path: Path) -> Problem:
     return Problem("the output is a file, not a folder", str(path), "results are several files", "name a folder")
 
@@ -303,6 +308,9 @@ def cannot_write(path: Path, error: OSError | ValueError) -> OutputError:
     """The error for a path the system does not let us write, or that can be none."""
     if isinstance(error, (FileExistsError, NotADirectoryError)) and (found := _file_in(path)) is not None:
         return OutputError(_no_folder(found))
+    if isinstance(error, FileExistsError) and (link := _link_to_nothing(path)) is not None:
+        why = f"it is a link to {os.readlink(link)}, which is not there"
+        return OutputError(Problem("cannot write the output", str(link), why, "remove the link, or make what it is to"))
     return OutputError(
         Problem(
             what="cannot write the output",

@@ -281,6 +281,17 @@ def test_a_name_that_no_folder_can_have_is_refused_with_a_way_out(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_link_to_nothing_is_refused_as_what_it_is(tmp_path):
+    """It was "File exists: choose a folder with room"."""
+    (tmp_path / "link").symlink_to("nowhere")
+    for name in ("link", "link/run"):
+        ended = run("simulate", "-p", "suzaku", "--turn", "35", "--out", name, cwd=tmp_path)
+        assert ended.code == 2
+        assert "cannot write the output (link)" in ended.err
+        assert "why: it is a link to nowhere, which is not there" in ended.err
+    assert [path.name for path in tmp_path.iterdir()] == ["link"]
+
+
 def test_where_one_file_of_several_cannot_be_written_none_stays(tmp_path):
     old = write_text(tmp_path / "old.txt", "before")
     (tmp_path / "folder").mkdir()
