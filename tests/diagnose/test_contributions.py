@@ -1293,7 +1293,9 @@ def test_how_large_the_best_that_is_known_would_be_is_said_where_it_is_told(size
 def test_an_answer_of_few_effects_says_that_no_others_were_looked_for(asked, first, last):
     """Of a current, with two others asked for: "no known cause accounts for it", and a ship unlike her profile."""
     left = SimpleNamespace(unknown=60.0, noticed=True, offsets={}, changed={})
-    ends = SimpleNamespace(first="This ship is unlike.", why=lambda unclear: "Many ends.", unlike=False)
+    ends = SimpleNamespace(
+        first="This ship is unlike.", why=lambda unclear: "Many ends.", unlike=False, from_formulas=False
+    )
     seen = SimpleNamespace(
         between=(),
         together=None,

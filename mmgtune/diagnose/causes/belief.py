@@ -188,8 +188,10 @@ class Belief:
 
     @property
     def _stands_beside_all(self) -> bool:
-        """Whether causes are what they are beside any hull: errors of logs, or such as tell all of the error."""
-        return all(one.of_logs for one in self.causes) or self.explains_all
+        """Whether causes are what they are beside any hull: errors of logs, or, where what is known of her is from
+        formulas, such as tell all of the error, of which inputs leave little open."""
+        of_formulas = self.ends is not None and self.ends.from_formulas
+        return all(one.of_logs for one in self.causes) or (of_formulas and self.explains_all and not self.leaves_open)
 
     @property
     def _n_terms(self) -> int:
