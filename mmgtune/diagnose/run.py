@@ -232,8 +232,8 @@ def _looked_at(
 
         earlier  what was found among all: its first look is taken up again; with an effect left out it is to be beaten
         """
-        again, than = earlier.steps[0] if earlier else None, earlier if left_out else None
-        found = search(bench, hypotheses, in_place, hooks.on_phase, again, than)
+        again = earlier.steps[0] if earlier else None
+        found = search(bench, hypotheses, in_place, hooks.on_phase, again, than=earlier if left_out else None)
         found.left_out = list(left_out)
         return found
 

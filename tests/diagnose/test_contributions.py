@@ -1157,27 +1157,26 @@ def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, before, tr
     assert [one.slight for one in brought] == ([] if trace else [False])
 
 
+def unexplained(**more):
+    """What is read of an unexplained answer when it is put into words: of one without any cause, or with more."""
+    no = dict.fromkeys(("looked_for_none", "tells_a_part", "misses_test", "of_a_sensor"), False)
+    logs = {"jumped": {}, "ended": {}, "wrong_logs": {}}
+    none = {"between": (), "causes": (), "contributions": (), "contradicted": "", "unclear": ""}
+    beside = {"together": None, "leading": None, "ends": None, "options": DiagnoseOptions()}
+    return SimpleNamespace(**{"verdict": "unexplained", **no, **logs, **none, **beside, **more})
+
+
 def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     """An abbreviation in the first sentence cut the headline in two when it was found by its full stop."""
     most = SimpleNamespace(sentence="Most of it, approx. 81 %, would be antenna.")
-    seen = SimpleNamespace(
-        between=(),
-        verdict="unexplained",
+    seen = unexplained(
         causes=(SimpleNamespace(tag="antenna", runs=None),),
         contributions=(("antenna", None), ("hull-term", None)),
         explained_share=0.99,
         together=SimpleNamespace(sentence="All trials together say more."),
-        contradicted="",
-        looked_for_none=False,
-        jumped={},
-        wrong_logs={},
-        ended={},
         unclear="one of them is a trace",
         tells_a_part=True,
         leading=most,
-        ends=None,
-        of_a_sensor=False,
-        options=DiagnoseOptions(),
     )
     said = saying.said(seen)
     assert said.headline == f"{said.first} {most.sentence}"
@@ -1296,25 +1295,7 @@ def test_an_answer_of_few_effects_says_that_no_others_were_looked_for(asked, fir
     ends = SimpleNamespace(
         first="This ship is unlike.", why=lambda unclear: "Many ends.", unlike=False, from_formulas=False
     )
-    seen = SimpleNamespace(
-        between=(),
-        together=None,
-        verdict="unexplained",
-        causes=(),
-        contributions=(),
-        contradicted="",
-        looked_for_none=False,
-        jumped={},
-        ended={},
-        wrong_logs={},
-        unclear="",
-        tells_a_part=False,
-        misses_test=False,
-        of_a_sensor=False,
-        leftover=left,
-        ends=ends,
-        options=DiagnoseOptions(effects=asked),
-    )
+    seen = unexplained(leftover=left, ends=ends, options=DiagnoseOptions(effects=asked))
     said = saying.said(seen)
     assert first in said.first
     assert said.sentence.endswith(last if asked else f"{last} This ship is unlike. Many ends.")

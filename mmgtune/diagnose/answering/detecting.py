@@ -28,8 +28,7 @@ def detectability(bench: Workbench, step: Step) -> list[Detectability]:
         needed = ENOUGH + len(h.names) * bench.price
         power = told_apart(step.linear, h.names)
         sizes = math.sqrt(needed * score.inflation) / power if power > 0.0 else math.inf
-        reach = [step.linear.reach.get(name, 1.0) for name in h.names]
-        sizes = max(sizes, WORTH, *(size for size in reach if size > 1.0))  # it does nothing at a typical size
+        sizes = max(sizes, WORTH, *(step.linear.reach.get(name, 0.0) for name in h.names))
         nearest: dict[str, int] = {}  # of each other effect
         for j in np.argsort(-cosine[i]):
             nearest.setdefault(named[j].hypothesis.tag, int(j))

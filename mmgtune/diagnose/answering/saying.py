@@ -173,8 +173,11 @@ def _of_none(answer: Answer) -> Said:
         return Said("No cause shows.", left_open)
     alone = ", ".join(dict.fromkeys(one.cause.tag for one in answer.traces if one.contribution.harmful))
     like_hull = listed([one.cause.tag for one in answer.traces if one.contribution.like_hull])
-    shows = "none of the causes that were looked for is more than a trace" if answer.traces else _NO_CAUSE
-    none = f"what alone shows, {alone}, tells held-out trials worse" if alone else shows
+    none = "no cause that was looked for shows"
+    if answer.traces:
+        none = "none of the causes that were looked for is more than a trace"
+    if alone:
+        none = f"what alone shows, {alone}, tells held-out trials worse"
     if like_hull:
         none = f"what alone shows, {like_hull}, a hull further off than believed would explain as well"
     few = ""
@@ -228,8 +231,8 @@ def _times(ratio: float) -> str:
 
 
 _CANNOT_NAME = "Something is wrong that this program cannot name."
-_NO_CAUSE = "no cause that was looked for shows"
-_NOT_KNOWN = " that this program does not know"
+_NOT_KNOWN = "Something is wrong that this program does not know"
+_NOT_ASKED_FOR = "Something is wrong, and nothing of what was looked for explains it"
 
 
 def _of_few(answer: Answer) -> str:
@@ -274,7 +277,7 @@ def _of_the_unknown(answer: Answer) -> Said:
     if answer.contradicted and not (answer.causes or answer.leaves_shape):
         return Said("What the re-tuned model leaves is taken for noise of the sensors.", _fading(answer))
     asked = answer.options.effects
-    unknown = f"Something is wrong{', and nothing of what was looked for explains it' if asked else _NOT_KNOWN}"
+    unknown = _NOT_ASKED_FOR if asked else _NOT_KNOWN
     if answer.misses_test:
         return Said(
             f"{unknown}: the re-tuned model fits the trials looked at, "

@@ -110,7 +110,7 @@ class Linear:
     small       (n_rows, n_one_sided) signatures of one-sided parameters over a small size, scaled to a typical one
     tiny        as ``small``, over a size so small that the response is linear, if the effect acts there
     share       (n_names,) of the signature's length that re-tuning leaves
-    reach       sizes, in typical ones, that signatures of one-sided parameters are over, by name
+    reach       sizes, in typical ones, that signatures are over of parameters that do nothing at a typical one, by name
     noise       (n_rows,) the residual less all signatures: hardly anything but noise
     wander      (n_rows, DRAWS) what other noise of the logged inputs would change
     blocks      first rows of pieces of about a minute of one trial
@@ -401,7 +401,7 @@ def linearise(
         small=small,
         tiny=tiny,
         share=np.linalg.norm(signature, axis=0) / np.maximum(length, 1e-300),
-        reach={wanted[i]: float(steps.reach[i]) for i in ends},
+        reach={wanted[i]: float(steps.reach[i]) for i in ends if steps.reach[i] > 1.0},
         noise=left[:, 0] - every @ (every.T @ left[:, 0]),
         wander=left[:, 1 + n_moved :],
         blocks=blocks,

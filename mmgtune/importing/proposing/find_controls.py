@@ -116,8 +116,7 @@ def _rudder(
         confidence = ASKED
     if remark:
         words.append(remark)
-    asked, why = find.scale_asked(column, own["unit"])
-    find.add(Guess(name, column, own | asked, (*words, *why), ASKED if asked else confidence))
+    find.add(Guess(name, column, own, tuple(words), confidence))
 
 
 def propeller(find: Finder) -> None:
@@ -246,5 +245,4 @@ def _shaft(
     if rivals and confidence == LIKELY:
         words.append(f"{', '.join(find.shown(k) for k in rivals[:3])} might be it too")
     words.extend(remarks)
-    asked, why = find.scale_asked(column, unit)
-    find.add(Guess(name, column, own | asked, (*words, *why), ASKED if asked else confidence))
+    find.add(Guess(name, column, own, tuple(words), confidence))

@@ -12,7 +12,7 @@ from ... import units
 from ..cells.degrees import DDMM
 from ..cells.headers import in_percent
 from .clocks import Clock
-from .guess import LIKELY, MARK, SURE, Guess
+from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
 from .sampling import Sample
 from .words import numbered, of_starboard, ordered, plain, quantity_named, unit_named
@@ -94,18 +94,17 @@ class Finder:
         if guess.column in self.own_units and "header_says" not in guess.keys:
             keys = {key: value for key, value in guess.keys.items() if key != "unit"}
             guess = replace(guess, keys=keys, evidence=(*guess.evidence, "its unit is what each log says"))
+        unit = str(guess.keys.get("unit", MARK))
+        if guess.column in self.in_percent and not unit.startswith(MARK):
+            of = f"how many {unit} are 100 % of {self.shown(guess.column)}?"
+            scale = {"scale": f"{MARK} a hundredth of its {unit} at 100 %: {of}"}
+            said = (*guess.evidence, "its name says percent")
+            guess = replace(guess, keys=guess.keys | scale, evidence=said, confidence=ASKED)
         if guess.column in self.ddmm:
             guess = replace(guess, keys={**guess.keys, "unit": DDMM})
         self.guesses[guess.quantity] = guess
         if guess.column is not None:
             self.used.add(guess.column)
-
-    def scale_asked(self, k: int, unit: str) -> tuple[dict[str, str], list[str]]:
-        """The question what 100 % are of a column that is in percent, and why it is asked; nothing of any other."""
-        if k not in self.in_percent:
-            return {}, []
-        question = f"{MARK} a hundredth of its {unit} at 100 %: how many {unit} are 100 % of {self.shown(k)}?"
-        return {"scale": question}, ["its name says percent"]
 
     def says_side(self, k: int) -> bool:
         """Whether the cells of a column say the side themselves."""

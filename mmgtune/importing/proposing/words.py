@@ -219,17 +219,11 @@ def of_starboard(names: Sequence[str], said: Sequence[str]) -> list[int]:
     said  what each name says, as ``quantity_named`` has it
     """
     to_port = {plain(name) for name, one in zip(names, said, strict=True) if one.endswith("_port")}
-    found = []
-    for k, (name, one) in enumerate(zip(names, said, strict=True)):
-        parts = plain(name).split()
-        twins = {
-            " ".join("p" if i == j else part for j, part in enumerate(parts))
-            for i in range(len(parts))
-            if parts[i] == "s"
-        }
-        if one in _DRIVES and twins & to_port:
-            found.append(k)
-    return found
+    return [
+        k
+        for k, (name, one) in enumerate(zip(names, said, strict=True))
+        if one in _DRIVES and re.sub(r"\bs\b", "p", plain(name)) in to_port
+    ]
 
 
 NUMBERED = 5
