@@ -150,3 +150,18 @@ def test_the_other_part_of_a_form_is_looked_for_with_the_part_that_is_known(tria
     assert left("measured", "turned") == []
     assert ("time_constant", "rate_limit") in left("rate_limit")
     assert ("time_constant",) not in left("rate_limit")
+
+
+def test_what_may_differ_between_runs_is_looked_for_by_run():
+    """Of a receiver late in one run a compass was told, as latency had one value for all runs."""
+    trials = list(load_trials("suzaku").trials.values())[:4]
+    known = known_causes(load_profile("suzaku"), trials, DiagnoseOptions())
+    differing = {name for one in of_runs(known, trials) for name in one.bases}
+    for name in (
+        "position-latency.seconds",
+        "position-latency.with_velocity",
+        "gyro-scale.factor",
+        "speed-scale.factor",
+    ):
+        assert f"effects.{name}" in differing
+    assert "effects.gyro-scale.curve" not in differing

@@ -90,6 +90,23 @@ def test_a_second_search_is_given_up_where_as_many_causes_as_are_believed_fit_no
     bench.put_back(after)
 
 
+def test_a_search_without_the_first_cause_is_told_what_it_has_to_beat(searched, monkeypatch):
+    bench, *_ = searched
+    run, asked = import_module("mmgtune.diagnose.run"), []
+
+    def seen(*arguments, than=None):
+        asked.append(than)
+        return search(*arguments, than=than)
+
+    monkeypatch.setattr(run, "search", seen)
+    monkeypatch.setattr(run, "against_its_kin", lambda found: True)
+    monkeypatch.setattr(run, "doubtful_beginning", lambda bench, found: found.steps[0].refits[:1])
+    options = DiagnoseOptions(effects=EFFECTS[:1], targets=("hull.R_0", "hull.Y_v"), leeway=0.0)
+    run.diagnose("suzaku", bench.trials, options)
+    assert [than is None for than in asked] == [True, False]
+    assert [cause.tag for cause in asked[1].causes] == ["current"]
+
+
 def test_what_is_left_out_says_no_more_what_is_hopeless():
     def one(name, by=""):
         return SimpleNamespace(names=(name,), by=by)

@@ -9,6 +9,7 @@ from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.bench.workbench import make_workbench
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.signatures.linear import Steps, linearise
+from mmgtune.effects import find_effect
 from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, scale_of, with_effects
 from mmgtune.trial import load_trials
@@ -82,3 +83,11 @@ def test_a_rudder_slower_than_a_log_that_moves_at_its_rate_is_found(slowly_steer
     assert cause.estimates[RATE].value == pytest.approx(np.radians(1.1), rel=0.03)
     (told,) = [one for one in result.detectability if one.parameters == ("rate_limit",)]
     assert told.limit["rate_limit"] < np.radians(2.0)  # a larger one cuts nothing off
+
+
+@pytest.mark.parametrize(("length", "speed", "slowest"), [(30.0, 6.0, 60.0), (83.0, 3.1, 4.0 * 83.0 / 3.1)])
+def test_a_slow_gear_is_in_reach_of_any_ship(length, speed, slowest):
+    """Of a tug it ended at 2.2 deg/s, and her blade at 2.0 was no cause."""
+    scale = scale_of(load_profile("suzaku"))._replace(L=length, U=speed)
+    for name in ("rate_limit", "to_starboard", "to_port"):
+        assert find_effect("steering-lag").parameters[name].bounds(scale) == (0.0, pytest.approx(slowest))
