@@ -122,6 +122,13 @@ def notes(
     return list(dict.fromkeys(one for one in said if one))
 
 
+def beyond_formulas(model: Model) -> list[str]:
+    """What a reader should know of a model's own surroundings, such as its depth, where nothing is measured."""
+    nothing = Surroundings(*np.zeros((len(Surroundings._fields), 1)))
+    said = [effect.beyond(model.numbers(), nothing) for effect in model.effects if effect.beyond is not None]
+    return [one for one in said if one]
+
+
 def extremes(around: FloatArray) -> FloatArray:
     """Of surroundings (n_samples, n_surroundings) the samples that say as much to ``notes``: (n, n_surroundings).
 

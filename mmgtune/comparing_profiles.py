@@ -13,6 +13,7 @@ from .arguments import ShipGiven, ship_of
 from .arrays import FloatArray
 from .components import effect_tag
 from .displayed import Displayed
+from .effects import Parameter
 from .errors import OptionError, Problem
 from .motions import breakdown
 from .options import SimulateOptions
@@ -130,10 +131,12 @@ def compare_profiles(a: ShipGiven, b: ShipGiven) -> Comparison:
 
 
 def _coefficients(a: ShipProfile, b: ShipProfile) -> list[dict[str, Any]]:
-    """Every number either has; None where the other has no such."""
+    """Every number either has, of effects those that differ; None where the other has no such."""
     rows = []
-    numbers = [{name: ship.value(name) for name in ship.names() if not effect_tag(name)} for ship in (a, b)]
+    numbers = [{name: ship.value(name) for name in ship.names() if _acts(ship, name)} for ship in (a, b)]
     for name in dict.fromkeys((*numbers[0], *numbers[1])):
+        if effect_tag(name) and numbers[0].get(name) == numbers[1].get(name):
+            continue
         ship = a if name in numbers[0] else b
         kind, _, symbol = name.rpartition(".")
         known = ship.sections[kind].component.fields[symbol]
@@ -154,6 +157,13 @@ def _coefficients(a: ShipProfile, b: ShipProfile) -> list[dict[str, Any]]:
             }
         )
     return rows
+
+
+def _acts(ship: ShipProfile, name: str) -> bool:
+    """Whether a number is the ship's, or that of an effect at other than its null."""
+    kind, _, symbol = name.rpartition(".")
+    field = ship.sections[kind].component.fields[symbol]
+    return not (effect_tag(name) and isinstance(field, Parameter)) or ship.value(name) != field.null
 
 
 def _both(ships: tuple[ShipProfile, ShipProfile], of: Callable[[ShipProfile], Any]) -> dict[str, Any]:

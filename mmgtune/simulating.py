@@ -12,6 +12,7 @@ from typing import Any, SupportsIndex, overload
 
 from .arguments import ShipGiven, TrialsGiven, of_one_ship
 from .backends import Integrator
+from .circumstances import beyond_formulas
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, among, brief, must_be_a
 from .evaluation import TrialRecord, evaluate
@@ -26,7 +27,7 @@ from .networks import named_ship
 from .options import SimulateOptions
 from .options.choice import must_be
 from .options.orders import ORDERS
-from .orders import Helmsman, Sailing, Straight, TurningOrder, ZigzagOrder, possible_approach, run_manoeuvres, sample_of
+from .orders import Sailing, Straight, TurningOrder, ZigzagOrder, possible_approach, run_manoeuvres, sample_of
 from .predictor import PhysicsPredictor, Predictor, as_predictor, noted, profile_of
 from .profile import ShipProfile
 from .stated_indices import no_reverse
@@ -213,6 +214,20 @@ def _beyond(ship: ShipProfile | None, motions: Sequence[Motion]) -> list[str]:
     ]
 
 
+def _beyond_the_gear(ship: ShipProfile, options: SimulateOptions) -> list[str]:
+    """Which manoeuvres order more than the steering gear of a ship does, as notes."""
+    rudders = [one.name for one in ship.arrangement.inputs if one.role == "rudder"]
+    gears = [gear for one in rudders if (gear := ship.actuator(one)) is not None]
+    most = min((min(-gear.low, gear.high) for gear in gears), default=math.inf)
+    beyond = [
+        name
+        for name, order in _orders(options)
+        if abs(order.angle if isinstance(order, TurningOrder) else order.rudder) > most + 1e-9
+    ]
+    ends = f"the rudder stops at {most / DEG:.3g} deg, where the steering gear of the ship ends"
+    return [f"{', '.join(beyond)}: {ends}"] if beyond else []
+
+
 def simulate(
     ship: ShipGiven | Model | Predictor,
     trials: TrialsGiven | None = None,
@@ -239,7 +254,9 @@ def simulate(
     )
     if trials is None:
         ordered = tuple(_on_orders(predictor, options))
-        return Simulated(predictor, ordered, (), options, tuple(_beyond(profile_of(predictor), ordered)))
+        assert isinstance(predictor, PhysicsPredictor)  # or else it takes no orders
+        own = (*_beyond_the_gear(predictor.model.profile, options), *beyond_formulas(predictor.model))
+        return Simulated(predictor, ordered, (), options, (*own, *_beyond(profile_of(predictor), ordered)))
     if options.given(ORDERS):
         raise OptionError(
             Problem(
@@ -306,12 +323,12 @@ def astern_of(options: SimulateOptions, ahead: float, L_pp: float, ship: ShipPro
     return n
 
 
-def _orders(options: SimulateOptions, at: float = 0.0) -> list[tuple[str, Helmsman]]:
+def _orders(options: SimulateOptions, at: float = 0.0) -> list[tuple[str, TurningOrder | ZigzagOrder]]:
     """The manoeuvres asked for by name, each once, ordered at time ``at`` [s]; both hard turns where none is.
 
     Raises OptionError for orders that make no sense.
     """
-    orders: dict[str, Helmsman] = {}
+    orders: dict[str, TurningOrder | ZigzagOrder] = {}
     for text in turns_of(options):
         angle = rudder_angle(text)
         orders[turn_name(angle)] = TurningOrder(angle, at)

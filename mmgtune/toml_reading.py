@@ -176,7 +176,9 @@ class TomlReader:
             fix = f"write {with_unit}{key} = {units.example_in_toml(unit, low, high)}"
             self.problem(f"'{shown}' is {written}", name, key, "only finite numbers can be simulated", fix)
         elif unit not in units.DIMENSIONLESS:
-            why, fix = "a number does not say what it is in", f'write {key} = "{brief(written)} {unit}"'
+            such = units.likely(float(written), unit, low, high) if finite(written) is not None else unit
+            why = "a number does not say what it is in"
+            fix = f'write {key} = "{brief(written)} {such}" if it is in {such}'
             self.problem(f"'{shown}' = {brief(written)} has no unit", name, key, why, fix)
         elif isinstance(written, int) and finite(written) is None:
             self.problem(f"'{shown}' is {brief(written)}, more than a number can be", name, key, fix="write it shorter")

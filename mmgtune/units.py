@@ -21,8 +21,8 @@ NORMAL_95 = 1.96
 _FACTORS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "NM": 1852.0},
     "m^2": {"m^2": 1.0, "cm^2": 1e-4},
-    "m/s": {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6, "cm/s": 1e-2, "mm/s": 1e-3, "ft/s": 0.3048},
-    "rad": {"rad": 1.0, "deg": DEG},
+    "m/s": {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6, "mph": 0.44704, "cm/s": 1e-2, "mm/s": 1e-3, "ft/s": 0.3048},
+    "rad": {"rad": 1.0, "deg": DEG, "gon": math.pi / 200.0},
     "deg": {"deg": 1.0, "rad": 1.0 / DEG},
     "rad/s": {"rad/s": 1.0, "deg/s": DEG, "deg/min": DEG / 60.0},
     "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": DEG},
@@ -46,6 +46,7 @@ _FACTORS: dict[str, dict[str, float]] = {
 
 _SYNONYMS = {
     "knots": "kn", "knot": "kn", "kts": "kn", "kt": "kn", "kmh": "km/h", "kph": "km/h", "mps": "m/s", "m s-1": "m/s",
+    "mi/h": "mph", "gons": "gon", "gradian": "gon", "gradians": "gon",
     "degree": "deg", "degrees": "deg", "°": "deg", "radian": "rad", "radians": "rad",
     "°/s": "deg/s", "degrees/s": "deg/s", "deg/sec": "deg/s", "dps": "deg/s", "rad/sec": "rad/s",
     "°/min": "deg/min", "deg/minute": "deg/min",
@@ -243,6 +244,19 @@ def example_in_toml(unit: str, low: float | None = None, high: float | None = No
         above = high if high is not None else max(0.0, 2.0 * (low or 0.0)) + 1.0
         number = 0.5 * (below + above)
     return f"{number:.3g}" if unit in DIMENSIONLESS else f'"{number:.3g} {unit}"'
+
+
+def likely(value: float, unit: str, low: float | None, high: float | None) -> str:
+    """The unit that a number without one may be in: ``unit``, or what people read for it where limits allow no other.
+
+    low, high  in ``unit``, exclusive
+    """
+
+    def may_be(one: str) -> bool:
+        number = value * _FACTORS[unit][one]
+        return (low is None or number > low) and (high is None or number < high)
+
+    return next((one for one in (unit, _SHOWN.get(unit, unit)) if may_be(one)), unit)
 
 
 def shown(value: float, unit: str) -> str:

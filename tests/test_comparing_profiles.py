@@ -5,7 +5,7 @@ import functools
 import pytest
 
 from mmgtune import ValidateOptions, compare_profiles, load_profile, load_trials, validate, write_comparison
-from mmgtune.profile import tuned
+from mmgtune.profile import tuned, with_effects
 from mmgtune.report import render
 
 pytestmark = pytest.mark.xdist_group("compared")
@@ -68,3 +68,12 @@ def test_the_order_of_the_profiles_loses_no_distance():
     for a, b in (("suzaku_fam", "suzaku"), ("suzaku", "suzaku_fam")):
         rows = {row["name"]: row["scatter"] for row in known(a, b).data["coefficients"]}
         assert {name for name, scatter in rows.items() if scatter is not None} == names
+
+
+def test_what_effects_are_set_otherwise_is_a_difference():
+    """Manoeuvres in a current differed from those without, and "0 coefficients" did."""
+    still = load_profile("suzaku")
+    carried = with_effects(still, {"current": {"north": 1.0}}, "a test")
+    rows = [row for row in compare_profiles(still, carried).data["coefficients"] if row["a"] != row["b"]]
+    assert [(row["name"], row["a"], row["b"]) for row in rows] == [("effects.current.north", None, 1.0)]
+    assert not any("effects" in row["name"] for row in compare_profiles(carried, carried).data["coefficients"])

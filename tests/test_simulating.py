@@ -12,6 +12,7 @@ from mmgtune.errors import OptionError
 from mmgtune.motions import Motion, as_trial, breakdown
 from mmgtune.options import SimulateOptions
 from mmgtune.predictor import PhysicsPredictor
+from mmgtune.profile import with_effects
 from mmgtune.resources import folder
 from mmgtune.stated_indices import compare_stated
 from mmgtune.trial import TrialSet
@@ -74,6 +75,19 @@ def test_criteria_of_a_zigzag_are_those_of_its_order(suzaku):
     names = [one["name"] for one in rows["zigzag_10"]["criteria"]]
     assert names == ["initial turning distance", "first overshoot 10/10", "second overshoot 10/10"]
     assert all(one["passed"] is not None for one in rows["zigzag_10"]["criteria"])
+
+
+def test_what_the_steering_gear_and_formulas_do_not_reach_is_said():
+    """A turn of 45 deg was that of 35 deg, without a word."""
+    ship = mmgtune.load_profile("suzaku")
+    gear = replace(ship, steering_gear=replace(ship.steering_gear, max_angle=math.radians(35.0)))
+    made = mmgtune.simulate(gear, options=SimulateOptions(turn=("45", "-20"), zigzag=("50/20",)))
+    (note,) = made.notes
+    assert note == "turn_p45, zigzag_p50_20: the rudder stops at 35 deg, where the steering gear of the ship ends"
+    assert not mmgtune.simulate(gear, options=SimulateOptions(turn=("35",))).notes
+    shallow = with_effects(ship, {"shallow-water": {"depth": 1.1 * ship.value("particulars.d")}}, "a test")
+    (note,) = mmgtune.simulate(shallow, options=SimulateOptions(turn=("20",))).notes
+    assert note.startswith("water is down to 1.1 draughts deep, and the formulas of shallow water hold down to")
 
 
 def test_a_start_from_rest_is_judged_by_nothing(suzaku):

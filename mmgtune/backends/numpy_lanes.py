@@ -197,9 +197,11 @@ class LaneModel:
         chain = [end]
         for k, (one, inputs) in enumerate(zip(self.actuators, self.acts_on, strict=True)):
             first = chain[k] if before is None else start[k]
-            held = first if before is None else before[k + 1]
+            held = list(first if before is None else before[k + 1])
             left = list(chain[k])
             for i in inputs:
+                if before is None and one.effect.rested is not None:
+                    held[i] = self.of(one.effect.rested)(first[i], one.e)
                 left[i] = self.of(one.effect.function)(first[i], chain[k][i], held[i], h, one.e)
             chain.append(type(end)(*left))
         return chain

@@ -244,8 +244,8 @@ def _by_kind(scores: Sequence[TrialScore]) -> list[str]:
     found = []
     for kind, of in by_manoeuvre(scores).items():
         values = [L_MSE(one) for one in by_member(of)]
-        spread = stdev(values) if len(values) > 1 and all(map(isfinite, values)) else 0.0
-        found.append(f"  {kind or 'manoeuvre not stated':<24}{fmean(values):>10.4g} ± {spread:.2g}")
+        spread = f" ± {stdev(values):.2g}" if len(values) > 1 and all(map(isfinite, values)) else ""
+        found.append(f"  {kind or 'manoeuvre not stated':<24}{fmean(values):>10.4g}{spread}")
     return found
 
 

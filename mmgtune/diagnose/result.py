@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..components import effect_tag
 from ..documents import finite_values
+from ..effects import find_effect
 from ..profile import ShipProfile, tuned, with_effects
 from .answering import saying
 from .answering.verdict import Answer
@@ -68,7 +70,9 @@ class Diagnosis(Answer):
         ]
         effects = [cause.effect for cause in self.causes if cause.effect is not None]
         held = 0.0 if self.choice is not None else self.options.leeway
-        believed = beliefs.in_words(held, effects, self.ends.formulas if self.ends else 0)
+        own = [find_effect(tag) for tag in dict.fromkeys(effect_tag(name) for name in self.theta if effect_tag(name))]
+        acting = [one for one in own if one is not None and one not in effects]
+        believed = beliefs.in_words(held, [*effects, *acting], self.ends.formulas if self.ends else 0)
         return [*of_profile, *believed, *winds.in_words(effects), *wave_groups.in_words(effects)]
 
     def _voyages(self) -> dict[str, Any] | None:

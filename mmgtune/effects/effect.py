@@ -304,13 +304,23 @@ class ActuatorFunction(Protocol):
     def __call__(self, start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: Any, /) -> Lanes: ...
 
 
+class RestedFunction(Protocol):
+    """What left the actuator of one input before the first sample, from what reaches it there."""
+
+    def __call__(self, reached: Lanes, e: Any, /) -> Lanes: ...
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ActuatorEffect(Effect):
-    """On the way from a logged input to the ship; acts on every input of one role, each by itself."""
+    """On the way from a logged input to the ship; acts on every input of one role, each by itself.
+
+    rested  what had left it before the first sample, from what reaches it there; None where that is the same
+    """
 
     place = "actuator"
     function: ActuatorFunction
     of: Role
+    rested: RestedFunction | None = None
 
 
 class FlowFunction(Protocol):

@@ -278,8 +278,9 @@ class _Reader(TomlReader):
             component.kind,
             why=f"{component.kind} model '{component.tag}' needs {'it' if len(fields) == 1 else 'them'}, and a number "
             "that is left out is not taken for 0",
-            fix=f"add {', '.join(f'{symbol} = ...' for symbol in fields)} to [{component.kind}]; "
-            "write 0.0 for a term that the source of your numbers does not have",
+            fix=f"add {', '.join(f'{symbol} = ...' for symbol in fields)} to [{component.kind}]"
+            + "; write 0.0 for a term that the source of your numbers does not have"
+            * any(impossible(symbol, field, 0.0) is None for symbol, field in fields.items()),
         )
 
     def coefficient(self, kind: str, symbol: str, field: Field, written: Any, source: str) -> Coefficient | None:

@@ -281,6 +281,13 @@ def test_one_run_that_is_off_beside_all_others_is_named(values, said, apart):
     assert f"The thrust of the propeller differed from run to run: {said}" in found.sentence
 
 
+def test_values_that_differ_by_little_are_told_with_the_digits_that_show_it():
+    """ "The gain of the rudder differed from run to run: 1, known to ± 0.0022"."""
+    rows = [{"factor": Estimate("x", value, None, None, 0.005, 0.0006)} for value in (1.0015, 1.0067, 1.004, 1.003)]
+    assert "differed from run to run: 1.002 to 1.007, known to" in by_run("rudder-gain", ("factor",), rows).sentence
+    assert range_in_words(1.0, 1.004, "-") == "1"
+
+
 def test_the_only_run_without_a_value_is_the_other_one():
     rows = [{"angle": Estimate("x", value * DEG, None, None, 0.04 * DEG)} for value in (1.0, 1.5, 0.01)]
     said = by_run("rudder-offset", ("angle",), rows).sentence

@@ -31,6 +31,7 @@ from mmgtune.diagnose.causes.contributions import (
 )
 from mmgtune.diagnose.causes.doubted import Doubted, Leading
 from mmgtune.diagnose.evidence.leftover import Leftover, _slow
+from mmgtune.diagnose.evidence.whereabouts import Whereabouts
 from mmgtune.diagnose.held_out.gain import BAND, expected, held_out
 from mmgtune.diagnose.held_out.unseen import Unseen
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
@@ -590,6 +591,9 @@ GROUP = (("a", "b"),)
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "do nearly as well"),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR, explains_all=True), ""),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR, explains_all=True, structured=True), "do nearly as well"),
+        # A wave of the indicator's error was a gain, another trim in each run and a flap.
+        (sum_of(*3 * [SMALL_BUT_CLEAR], explains_all=True, by_run=1), "do nearly as well"),
+        (sum_of(*3 * [SMALL_BUT_CLEAR], explains_all=True), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "more than noise"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.03), "more than noise"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.03, explains_all=True), ""),
@@ -1162,7 +1166,7 @@ def unexplained(**more):
     no = dict.fromkeys(("looked_for_none", "tells_a_part", "misses_test", "of_a_sensor"), False)
     logs = {"jumped": {}, "ended": {}, "wrong_logs": {}}
     none = {"between": (), "causes": (), "contributions": (), "contradicted": "", "unclear": ""}
-    beside = {"together": None, "leading": None, "ends": None, "options": DiagnoseOptions()}
+    beside = {"together": None, "leading": None, "ends": None, "options": DiagnoseOptions(), "whereabouts": None}
     return SimpleNamespace(**{"verdict": "unexplained", **no, **logs, **none, **beside, **more})
 
 
@@ -1205,6 +1209,12 @@ def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
     ):
         assert saying.said(seen).headline.startswith("This ship may be unlike her profile in many ways, which ")
         assert f"{unlike}." in saying.said(seen).why
+    runs = dict(zip("abcdef", (0.4, 0.3, 0.1, 0.1, 0.1, 0.0), strict=True))
+    seen.whereabouts = Whereabouts(runs, {}, {}, {}, {}, {}, (), {}, {}, {})  # as of a ship that passed by in two runs
+    assert saying.said(seen).headline.startswith("Something is wrong that this program cannot name.")
+    assert unlike not in saying.said(seen).why
+    assert not replace(seen.whereabouts, runs=runs | {"a": 0.3, "f": 0.1}).in_few
+    seen.whereabouts = None
     seen.explained_share = 0.99
     seen.contradicted = first
     said = saying.said(seen)

@@ -60,6 +60,26 @@ def test_what_lies_far_from_where_a_search_begins_is_found(tag, hidden, rivals, 
     assert found["ci95"][0] < truth < found["ci95"][1]
 
 
+def test_a_blade_that_begins_at_one_end_of_its_play_is_told(tmp_path):
+    """From its middle it was a wind, another one in each run."""
+    hidden = {"play": 3.0 * DEG, "begins": -1.0}
+    result = said_of({"backlash": hidden}, tmp_path, "backlash", "wind", "rudder-gain")
+    assert [cause.tag for cause in result.causes] == ["backlash"], result.sentence()
+    found = result.to_dict()["causes"][0]["parameters"]
+    assert found["play"]["ci95"][0] < hidden["play"] < found["play"]["ci95"][1]
+    assert found["begins"]["value"] == pytest.approx(-1.0, abs=0.3)
+
+
+def test_a_loose_blade_is_told(tmp_path):
+    """An order of 10 deg that turned the blade by 8.5, whichever way, was a wind of each run and a flap."""
+    hidden = {"pushed": 3.0 * DEG}
+    result = said_of({"backlash": hidden}, tmp_path, "backlash", "wind", "flap", "rudder-gain")
+    assert [cause.tag for cause in result.causes] == ["backlash"], result.sentence()
+    assert "within which the flow pushes the blade back to amidships" in result.sentence()
+    found = result.to_dict()["causes"][0]["parameters"]["pushed"]
+    assert found["ci95"][0] < hidden["pushed"] < found["ci95"][1]
+
+
 @pytest.mark.parametrize(("late", "may_be"), [(10.0, True), (40.0, False)])
 def test_a_clock_of_single_runs_is_not_off_by_more_than_gears_take(late, may_be):
     """An engine that followed its telegraph late was a clock of the runs in which it was moved, half a minute late."""

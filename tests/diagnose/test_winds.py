@@ -20,6 +20,7 @@ from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.searching.look import look
 from mmgtune.diagnose.signatures.intervals import Estimate
 from mmgtune.diagnose.signatures.linear import linearise
+from mmgtune.diagnose.signatures.retuned import retuned, weighed
 from mmgtune.effects import find_effect
 from mmgtune.model import Model
 from mmgtune.motions import simulate_trials
@@ -85,6 +86,31 @@ def test_a_problem_made_linear_knows_what_is_believed_of_forms(sailed):
     bench, point, _ = wind_on(*sailed)
     linear = linearise(bench, point)
     assert np.sum(linear.residual**2) == pytest.approx(point.chi2, abs=TOLERANCE)
+
+
+def blown(profile, trials, speed=12.0):
+    """Runs in a wind that was measured, on the ship of ``sailed``."""
+    rng = np.random.default_rng(8)
+    windy = with_effects(profile, {"wind": {"measured": 1.0, **OFF}}, "made")
+    air = {"wind_speed": speed, "wind_dir": 40.0 * DEG}
+    seen = [replace(one, extra={name: np.full(one.n_samples, value) for name, value in air.items()}) for one in trials]
+    return [logged(one, motion, rng) for one, motion in zip(seen, simulate_trials(windy, seen), strict=True)]
+
+
+def test_a_measured_wind_off_its_formulas_is_not_taken_up_by_the_hull(sailed):
+    """No cause has to be named for it: a profile that has the wind has its formulas, which are off for every ship."""
+    profile, trials = sailed
+    own = with_effects(profile, {"wind": {"measured": 1.0}}, "as logged")
+    bench = make_workbench(own, blown(profile, trials), DiagnoseOptions())
+    point = base_fit(bench)
+    assert point.chi2 / bench.problem.n_residuals < 1.05
+    assert bench.values(point)["effects.wind.turning"] == pytest.approx(2.2, abs=0.4)
+    moved = retuned(bench, point)
+    assert weighed(moved).startswith("The wind of the profile fits best with factor on the moment of the formulas")
+    stiff = make_workbench(own, bench.trials, DiagnoseOptions())
+    stiff.believed = replace(stiff.believed, acting=frozenset())
+    assert base_fit(stiff).chi2 > 1.5 * point.chi2
+    assert not make_workbench(own, trials, DiagnoseOptions()).believed.of_acting  # nobody measured a wind
 
 
 def test_nothing_wavers_where_no_wind_blows(sailed):

@@ -376,7 +376,7 @@ def test_sensors_with_a_number_or_two(tag, value, seen):
         ("rudder-gain", 0.9, Control(1.7, 0.3 * 0.9 * 0.9 * (1.0 + 0.9 * (0.3 / np.radians(35.0)) ** 2))),
         ("rudder-limit", 0.25, Control(1.7, 0.25)),
         ("rudder-limit", 0.35, Control(1.7, 0.3)),
-        ("backlash", 0.1, Control(1.7, 0.3)),  # in the middle of its play
+        ("backlash", 0.1, Control(1.7, 0.3 + 0.1 * 0.05 - 0.05)),  # from near the middle, and back
         ("governor-lag", 5.0, Control(1.7, 0.3)),  # settled
         ("rpm-scale", 1.1, Control(1.87, 0.3)),
     ],

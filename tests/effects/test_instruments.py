@@ -183,7 +183,7 @@ def test_deviation_of_a_compass():
 
 def test_play_is_taken_up_before_the_blade_follows():
     effect = find_effect("backlash")
-    e = effect.params(4.0, 0.0)
+    e = effect.params(4.0, 0.0, 0.0, 0.0)
     blade, found = 0.0, {}
     way = [*range(11), *range(9, -11, -1), *range(-9, 1)]
     for before, now in pairwise(way):
@@ -194,6 +194,24 @@ def test_play_is_taken_up_before_the_blade_follows():
     assert found[5] == [3.0, 7.0]
     assert found[-10] == [-8.0]
     assert found[0] == [2.0, -2.0]
+
+
+@pytest.mark.parametrize(("begins", "stands"), [(0.0, 1.0), (1.0, 3.0), (-0.5, 0.0), (7.0, 3.0)])
+def test_a_blade_begins_anywhere_in_its_play(begins, stands):
+    """Beyond its end there is no play, and once the linkage has gone through it, it makes no difference."""
+    effect = find_effect("backlash")
+    e = effect.params(4.0, begins, 0.0, 0.0)
+    blade = effect.function(1.0, 1.0, effect.rested(1.0, e), 1.0, e)
+    assert blade == stands
+    assert effect.function(1.0, 9.0, blade, 1.0, e) == 7.0
+    assert effect.rested(1.0, effect.params(0.0, begins, 0.0, 0.0)) == 1.0
+
+
+def test_a_loose_blade_is_pushed_back_to_amidships():
+    effect = find_effect("backlash")
+    e = effect.params(0.0, 0.0, 4.0, 0.0)
+    found = [effect.function(at, at, 5.0, 1.0, e) for at in (-5.0, -1.0, 0.0, 2.0, 3.0)]
+    assert found == [-3.0, 0.0, 0.0, 0.0, 1.0]
 
 
 def test_noise_of_the_log_moves_no_blade_and_hides_no_play():
@@ -207,11 +225,11 @@ def test_noise_of_the_log_moves_no_blade_and_hides_no_play():
             100::100
         ]
 
-    still = moved(ordered, effect.params(2.0, 0.0))
+    still = moved(ordered, effect.params(2.0, 0.0, 0.0, 0.0))
     assert still == [0.0, 9.0, -9.0, -1.0]
-    assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.0)), still))) > 0.4
-    assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.5)), still))) < 0.2
-    assert moved(noisy, effect.params(0.0, 0.5)) == moved(noisy, effect.params(0.0, 0.0))  # without play it is absent
+    assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.0, 0.0, 0.0)), still))) > 0.4
+    assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.0, 0.0, 0.5)), still))) < 0.2
+    assert moved(noisy, effect.params(0.0, 0.0, 0.0, 0.5)) == moved(noisy, effect.params(0.0, 0.0, 0.0, 0.0))  # absent
 
 
 @pytest.mark.parametrize("engine", [None, lambda _: 1.5], ids=["order by order", "step by step"])

@@ -257,6 +257,7 @@ def logged_revolutions(n_0, u, v):
 def blade_angle(s, followed, play):
     """Blade angle [rad] from that of the gear, after its lag: play, gain, zero, stop."""
     angle = min(max(play, followed - s.half_play), followed + s.half_play)
+    angle -= min(max(angle, -s.half_pushed), s.half_pushed)
     side = s.gain_stbd if angle > 0.0 else s.gain_port
     side *= 1.0 + (s.gain_curve - s.unknown_indicator_cubic) * (angle / np.radians(35.0)) ** 2
     return min(max(s.rudder_gain * side * angle + s.rudder_offset, -s.rudder_limit), s.rudder_limit)
@@ -324,7 +325,8 @@ def voyage(s, n_0, psi_0, angle, zigzag, steps, more):
     z[2], z[3] = psi_0, SPEED
     _, z[6], z[7] = hull(s, 0.0, SPEED, 0.0, 0.0)
     z[9] = n_0
-    gear = order = play = 0.0
+    gear = order = 0.0
+    play = s.play_begins * s.half_play
     moved = np.zeros(steps + more + 2)  # the gear at every step
     orders = 0
     end = steps

@@ -107,7 +107,7 @@ HULL_TERMS = (
 NULL: dict[str, dict[str, float]] = {
     "rudder-offset": {"angle": 0.0},
     "dead-time": {"seconds": 0.0},
-    "backlash": {"play": 0.0},
+    "backlash": {"play": 0.0, "begins": 0.0, "pushed": 0.0},
     "rudder-gain": {"factor": 1.0, "starboard": 1.0, "port": 1.0, "curve": 0.0},
     "steering-lag": {"time_constant": 0.0, "rate_limit": np.inf, "to_starboard": np.inf, "to_port": np.inf},
     "governor-lag": {"time_constant": 0.0},
@@ -179,6 +179,7 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["rate_to_stbd"], p["rate_to_port"] = (rate if np.isfinite(rate) else GEAR_RATE for rate in rates)
     p["steering_lag"] = gear["time_constant"]
     p["dead_time"], p["half_play"] = e["dead-time"]["seconds"], 0.5 * e["backlash"]["play"]
+    p["play_begins"], p["half_pushed"] = e["backlash"]["begins"], 0.5 * e["backlash"]["pushed"]
     p["gain_stbd"], p["gain_port"] = e["rudder-gain"]["starboard"], e["rudder-gain"]["port"]
     p["gain_curve"] = e["rudder-gain"]["curve"]
     p["governor_lag"] = e["governor-lag"]["time_constant"]

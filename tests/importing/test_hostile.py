@@ -41,6 +41,27 @@ def refused(log, *words, text=MAP):
 # what is refused
 
 
+def test_two_receivers_that_talk_in_turn(tmp_path):
+    """Positions 30 m apart made one track that jumped at every sample; who changes its name once is one receiver."""
+
+    def read(talks):
+        log = tmp_path / "log.txt"
+        log.write_text("\n".join(sentence(one[1:].partition("*")[0]) for one in talks), encoding="utf-8")
+        found = import_logs([log], load_map("nmea-0183", preset=True), tmp_path / "out", overwrite=True)
+        return found.trials[0], found.text()
+
+    lines = nmea(turn())
+    other = [line.replace("$GPGGA", "$GNGGA") for line in nmea(turn(), start=86390.5, origin=(35.0003, 139.0))]
+    pairs = zip(lines, other, strict=True)
+    trial, report = read([one for pair in pairs for one in (pair if "GGA" in pair[0] else pair[:1])])
+    assert np.abs(trial.x - turn().x).max() < 0.01
+    assert "two sensors talk in turn: GPGGA is taken, and 400 GNGGA left out" in report
+    half = len(lines) // 2
+    trial, report = read([*lines[:half], *(line.replace("$GPGGA", "$GNGGA") for line in lines[half:])])
+    assert trial.n_samples == turn().n_samples
+    assert "in turn" not in report
+
+
 def test_empty_binary_and_absent(log, tmp_path):
     log.write_bytes(b"")
     refused(log, "the log is empty", "log.csv")

@@ -756,6 +756,115 @@ def test_the_angle_that_leads_the_track_in_turns_is_the_heading(tmp_path, course
     assert "leads it in turns" in " ".join(guesses["psi"].evidence)
 
 
+def taken(log, quantity):
+    """The name of the column that is proposed for a quantity."""
+    guess = propose_map([log]).guesses[quantity]
+    return pd.read_csv(log).columns[guess.column]
+
+
+@pytest.mark.parametrize(
+    ("ordered", "measured"),
+    [("RSA_CMD", "RSA"), ("Helm", "Rudder"), ("Steering Order", "Steering Feedback"), ("Rudder SP", "Rudder PV")],
+)
+def test_the_rudder_is_the_one_measured_and_not_its_order(tmp_path, ordered, measured):
+    """Steps of 20 deg in a second were the rudder, surely."""
+    trial = suzaku("zigzag_20")
+    columns = over_ground(trial)
+    rudder = columns.pop("rudder")
+    columns |= {ordered: 20.0 * np.sign(np.round(rudder / 15.0)), measured: rudder}
+    assert taken(write_csv(tmp_path / "log.csv", columns), "delta") == measured
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("PRP_SHAFT1_TRQ_KNM", 100.0), ("SHAFT_TRQ", 60.0), ("ME_LOAD_PCT", 75.0), ("TC RPM", 12000.0),
+        ("ME2 rpm", 25000.0),  # called what it may be, and beyond what any propeller is driven by
+    ],
+)  # fmt: skip
+def test_torque_and_turbochargers_are_no_revolutions(tmp_path, name, values):
+    """A constant torque was the revolutions, surely, and nothing told it."""
+    columns = over_ground(suzaku("turn_p35"))
+    shaft = columns.pop("shaft")
+    columns |= {name: np.full(len(shaft), values), "Shaft [rpm]": shaft}
+    assert taken(write_csv(tmp_path / "log.csv", columns), "n") == "Shaft [rpm]"
+
+
+@pytest.mark.parametrize(("ahead", "abeam"), [("VBW_lon", "VBW_tra"), ("STW long", "STW trans")])
+def test_a_velocity_abeam_is_no_yaw_rate(tmp_path, ahead, abeam):
+    """It goes with the yaw rate, and was one of deg/s to port where no other was logged."""
+    columns = over_ground(suzaku("zigzag_20"))
+    trial = logged(suzaku("zigzag_20"))
+    columns |= {ahead: trial["ahead"] / KNOT, abeam: trial["abeam"] / KNOT}
+    del columns["rate"]
+    proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert [list(columns)[proposal.guesses[name].column] for name in ("u", "v")] == [ahead, abeam]
+    assert "r" not in proposal.guesses
+    assert not any(
+        "contradicts" in note for note in proposal.notes
+    )  # the speed and course over the ground, which agree
+
+
+def test_a_speed_is_off_by_no_factor_that_it_is_not_off_by_on_the_straight(tmp_path):
+    """In a turn the speed along the track is 5 % more than that ahead, which "may be a factor"."""
+    columns = over_ground(suzaku("turn_p35"))
+    columns["Fahrt [kn]"] = columns.pop("SOG [kn]")
+    del columns["COG [deg]"]
+    guess = propose_map([write_csv(tmp_path / "log.csv", columns)]).guesses["sog"]
+    assert guess.confidence == "sure"
+    assert "factor" not in " ".join(guess.evidence)
+
+
+def test_names_of_latitude_and_longitude_that_are_exchanged(tmp_path):
+    """135.2 deg was read as 1 deg 35.2 min, and the ship turned to the other side at a fiftieth of her speed."""
+    trial = suzaku("turn_p35")
+    columns = over_ground(trial)
+    north, east = columns.pop("north"), columns.pop("east")
+    columns |= {"Longitude": 34.5 + north / 111_000.0, "Latitude": 135.2 + east / (111_000.0 * np.cos(34.5 * DEG))}
+    proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert [list(columns)[proposal.guesses[name].column] for name in ("latitude", "longitude")] == [
+        "Longitude",
+        "Latitude",
+    ]
+    assert proposal.guesses["psi"].keys["positive"] == "clockwise"
+    assert proposal.guesses["sog"].confidence == "sure"
+    assert any("'Latitude' is beyond 90 deg" in note for note in proposal.notes)
+
+
+@pytest.mark.long
+def test_a_log_of_a_day_is_looked_at_where_most_happens(tmp_path):
+    """Windows of six minutes saw neither speed nor rudder: "contradicts the positions", and a side that was asked."""
+    trial = suzaku("zigzag_20")
+    columns = over_ground(trial)
+    rest = 40_000
+    t = np.arange(len(trial.t) + 2 * rest, dtype=float)
+    long = {"time": t}
+    before = np.arange(-rest, 0)
+    after = np.arange(1, rest + 1)
+    for name, values in columns.items():
+        if name == "time":
+            continue
+        values = np.unwrap(values, period=360.0) if "deg" in name or name == "heading" else values
+        steps = {"north": np.diff(values[:5]).mean(), "east": np.diff(values[:5]).mean()}
+        slope = steps.get(name, 0.0)
+        last = {"north": np.diff(values[-5:]).mean(), "east": np.diff(values[-5:]).mean()}.get(name, 0.0)
+        noise = 1e-3 * np.std(values) * np.random.default_rng(1).standard_normal(len(t))
+        long[name] = np.concatenate([values[0] + slope * before, values, values[-1] + last * after]) + noise
+    proposal = propose_map([write_csv(tmp_path / "log.csv", long)])
+    assert {proposal.guesses[name].confidence for name in ("psi", "sog", "cog", "n", "delta")} == {"sure"}
+    assert proposal.guesses["delta"].keys["positive"] == "starboard"
+
+
+@pytest.mark.parametrize(
+    "before", ["", "2023-05-12T08:00:00.123Z ", "\\s:GP0001,c:1683878400*00\\", "12/05/2023,COM3,"]
+)
+def test_sentences_with_something_before_them(tmp_path, before):
+    """Said to be no table of numbers, though the preset read them."""
+    log = tmp_path / "log.txt"
+    log.write_text("\n".join(before + line for line in nmea(turn())), encoding="utf-8")
+    assert propose_map([log]).notes[0].startswith("sentences seen: ")
+
+
 @pytest.mark.parametrize(
     ("names", "expected"),
     [
@@ -783,7 +892,7 @@ def test_of_revolutions_before_and_behind_a_gear_those_behind_it_are_taken(tmp_p
         ("Hauptmaschine [U/min]", "n"), ("Main engine [rpm]", "n"), ("ME rpm", "n"), ("Drehzahl Hauptmaschine", "n"),
         ("ME Speed [rpm]", "n"), ("Engine speed [1/min]", "n"), ("Engine speed", "n"), ("Hoofdmotor [omw/min]", "n"),
         ("Bb-Maschine [U/min]", "n_port"), ("Régime moteur [tr/min]", "n"), ("Huvudmaskin [varv/min]", "n"),
-        ("Motor vessel speed [kn]", "u"), ("Main engine load [%]", ""), ("ME power [kW]", "other"),
+        ("Motor vessel speed [kn]", "u"), ("Main engine load [%]", "other"), ("ME power [kW]", "other"),
         ("Main engine cmd [rpm]", "order"), ("Turbocharger [rpm]", "other"), ("Bow thruster [rpm]", "n_bow"),
         ("Diesel generator 1 [rpm]", "other"), ("Steering pump motor [rpm]", "other"), ("ROT [1/min]", "r"),
     ],
@@ -851,6 +960,12 @@ def test_a_speed_of_a_log_is_the_speed_ahead_and_a_factor_is_not_sure(tmp_path, 
         ("Senshu hoi", "psi", ""), ("Shinro", "cog", ""), ("Rumbo efectivo", "cog", ""),
         ("vel_e", "v", ""), ("pos_n", "x", ""), ("utm_e", "y", ""), ("RPM", "n", "rpm"),
         ("sog_ms", "sog", "m/s"), ("Speed [ms]", "u", "m/s"), ("timestamp_ms", "time", "ms"),
+        ("PRP_SHAFT1_TRQ_KNM", "other", ""), ("ME1_LOAD_PCT", "other", ""), ("TC RPM", "other", "rpm"),
+        ("Rudder SP", "order", ""), ("Rudder PV", "delta", ""), ("VBW_tra", "v", ""), ("STW long", "u", ""),
+        ("data.eta 1", "", ""), ("Скорость, уз", "u", "kn"), ("Курс, град", "psi", "deg"),
+        ("Руль ПБ", "delta_stbd", ""),
+        ("Обороты об/мин", "n", "rpm"), ("Угловая скорость град/мин", "r", "deg/min"), ("Широта", "latitude", ""),
+        ("Speed mph", "u", "mph"), ("Heading gon", "psi", "gon"), ("Заданный курс", "order", ""),
     ],
 )  # fmt: skip
 def test_names(name, quantity, unit):

@@ -161,6 +161,24 @@ def test_spikes(seed: int | None, name: str, value: float) -> None:
     assert "orders" not in warnings
 
 
+@pytest.mark.parametrize("apart", [slice(None, None, 2), slice(None, None, 3)], ids=["in turn", "one in three"])
+@pytest.mark.parametrize(
+    ("name", "by", "told"),
+    [("x", 30.0, "'x' and 'y' go to and fro by"), ("psi", 9.0 * DEG, "'psi' goes to and fro by")],
+)
+def test_two_sensors_that_log_in_turn(name: str, by: float, told: str, apart: slice) -> None:
+    """Positions that alternated between two places 30 m apart passed for noise, of the log and of a diagnosis."""
+
+    def moved(values: FloatArray) -> FloatArray:
+        other = np.array(values)
+        other[apart] += by
+        return other
+
+    assert told in said(changed(made(seed=1), name, moved))
+    assert told not in said(changed(made(seed=1), name, lambda values: values + by))
+    assert told not in said(made(seed=1, dt=0.1))  # noise larger than the way from sample to sample
+
+
 @pytest.mark.parametrize(("name", "step"), [("x", 2.0), ("psi", 1.0 * DEG), ("u", 0.1), ("r", 0.2 * DEG), ("n", 0.02)])
 def test_the_last_of_few_digits_is_no_spike(name: str, step: float) -> None:
     def printed(values: FloatArray) -> FloatArray:

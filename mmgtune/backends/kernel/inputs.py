@@ -81,6 +81,11 @@ def acting_slots(model: Model) -> range:
     return range(first, first + n_inputs)
 
 
+def _rested(effect: ActuatorEffect, reached: str) -> str:
+    """What had left an actuator before the first sample."""
+    return reached if effect.rested is None else f"{name_of(effect)}_rested({reached}, {tuple_of(effect)})"
+
+
 def actuate(model: Model, array: str, first: bool) -> list[str]:
     """What each actuator makes of what reaches it; at the first sample it has been at rest there."""
     n_inputs, actuators = len(model.inputs), model.acting(ActuatorEffect)
@@ -91,7 +96,7 @@ def actuate(model: Model, array: str, first: bool) -> list[str]:
         for k in range(n_inputs):
             source, target = level * n_inputs + k, (level + 1) * n_inputs + k
             start, end = slot("now", source), slot(array, source)
-            before = start if first else slot("now", target)
+            before = _rested(effect, start) if first else slot("now", target)
             value = f"{name_of(effect)}({start}, {end}, {before}, h[l], {tuple_of(effect)})" if k in moved else end
             acts.append(f"{slot(array, target)} = {value}")
             passes.append(f"{slot(array, target)} = {end}")

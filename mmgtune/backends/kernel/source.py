@@ -281,6 +281,8 @@ def _imports(model: Model) -> list[str]:
             named.append((part.inverse, f"{name_of(part)}_inverse"))
         if isinstance(part, FilterEffect):
             named.append((part.settled, f"{name_of(part)}_settled"))
+        if isinstance(part, ActuatorEffect) and part.rested is not None:
+            named.append((part.rested, f"{name_of(part)}_rested"))
         if isinstance(part, FlowEffect) and part.rate is not None:
             named.append((part.rate, f"{name_of(part)}_rate"))
     imports = []
@@ -290,11 +292,15 @@ def _imports(model: Model) -> list[str]:
     return list(dict.fromkeys(imports))
 
 
+BESIDES = ("inverse", "start", "rate", "settled", "rested")
+"""Functions that effects of some places have besides their own."""
+
+
 def functions_of(model: Model) -> list[Callable[..., Any]]:
     """Functions outside the program's own physics and effects that the kernel of ``model`` calls."""
     found: list[Any] = [model.arrangement.forces]
     for part in (*model.parts, *model.effects):
-        found += [part.function, *(getattr(part, name, None) for name in ("inverse", "start", "rate", "settled"))]
+        found += [part.function, *(getattr(part, name, None) for name in BESIDES)]
     return [function for function in found if function is not None]
 
 

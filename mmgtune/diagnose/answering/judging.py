@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -27,7 +28,7 @@ from ..bench.workbench import Point, Workbench
 from ..causes.belief import MOSTLY, TOLD
 from ..causes.by_run import ByRun
 from ..causes.cause import Candidate, Cause, Trace
-from ..causes.contributions import Aside, Contribution, contributions, unlike_without, with_only
+from ..causes.contributions import Aside, Contribution, contributions, size_of, unlike_without, with_only
 from ..causes.doubted import Doubted, Leading
 from ..evidence.gathering import error_of, evidence
 from ..evidence.leftover import NOTICED, OF_ANOTHER_FORM, Leftover, leftover
@@ -39,6 +40,7 @@ from ..searching.refit import WORTH, Refit, kin_among
 from ..searching.search import Found, as_special, rivals_of, step_of
 from ..signatures.at_ends import AtEnds
 from ..signatures.intervals import Estimate, estimates
+from ..signatures.linear import typical
 from ..signatures.retuned import retuned, unlike_any
 from ..voyages.difference import Difference
 from ..voyages.windows import Choice
@@ -175,26 +177,40 @@ class Judge:
     def _without_doubtful(
         self, result: Diagnosis, found: Found, brought: Sequence[Contribution]
     ) -> tuple[Diagnosis, Found]:
-        """The answer without small causes that cannot be told from others, the smallest first, as long as it holds
-        without them; a small third may be all that keeps two from being believed."""
-        while result.groups and len(found.causes) > 1 and not self.hooks.stop():
+        """The answer without small causes that cannot be told from others, or from none, or of a size that is not worth
+        speaking of, the smallest first, as long as it holds without them; a small third may be all that keeps two from
+        being believed."""
+        while len(found.causes) > 1 and not self.hooks.stop():
             groups = {tag: others for tag, *others in result.groups}
+            of_no_size = {cause.tag for cause in result.causes if not cause.sized}
             doubtful = [
                 (one.seen, cause, one)
                 for cause, one in zip(found.causes, brought, strict=True)
-                if one.little and cause.tag in groups
+                if one.little and (cause.tag in {*groups, *of_no_size} or self._is_tiny(found, cause))
             ]
             if not doubtful:
                 break
             _, cause, brings = min(doubtful, key=lambda one: one[0])
             fewer = with_only(self.bench, found, [one for one in found.causes if one is not cause])
             brought = contributions(self.bench, fewer, self.unseen)
-            other = self._compared(self._judged(fewer, brought), fewer)
+            other = self._judged(fewer, brought)
+            if cause.tag in of_no_size:  # what it removes is none of anything
+                removed = max(other.leftover.unknown - result.leftover.unknown, 0.0)
+                other = replace(other, of_traces=other.of_traces + removed)
+            other = self._compared(other, fewer)
             if not (other.names_causes and other.explains_nearly_all):
                 break
-            trace = _trace(self.bench, Aside.of(self.bench, found, cause, brings, groups[cause.tag]))
+            trace = _trace(self.bench, Aside.of(self.bench, found, cause, brings, groups.get(cause.tag, [])))
             result, found = replace(other, traces=(*result.traces, trace)), fewer
         return result, found
+
+    def _is_tiny(self, found: Found, cause: Hypothesis) -> bool:
+        """Whether the size of a cause, or by how much it differs from run to run, is not worth speaking of."""
+        if not cause.by:
+            return size_of(self.bench, found.final, cause) < WORTH
+        there = dict(zip(found.final.names, found.final.unit, strict=True))
+        values = np.array([there[name] for name in cause.names]).reshape(len(cause.groups), -1)
+        return math.hypot(*np.std(values, axis=0) / [typical(self.bench, name) for name in cause.bases]) < WORTH
 
     def _one_of_kin(self, result: Diagnosis, found: Found) -> tuple[Diagnosis, Found]:
         """The answer with one of two causes that act much alike, where each does nearly all that both do and both by

@@ -76,8 +76,9 @@ def said(answer: Answer) -> Said:
         first, *why = [*pieces, unknown.why]
         if answer.ends and not (answer.contradicted or answer.of_a_sensor):
             unlike, ends = answer.ends.first, answer.ends.why(answer.unclear)
-            if answer.options.effects and not answer.ends.from_formulas:
-                unlike, ends = "", ""  # one that was not looked for may stand for it
+            in_few = answer.whereabouts is not None and answer.whereabouts.in_few
+            if (answer.options.effects or in_few) and not answer.ends.from_formulas:
+                unlike, ends = "", ""  # one that was not looked for, or what went on in these runs, may stand for it
             if unlike and answer.tells_a_part and answer.explained_share >= MOSTLY and not answer.ends.unlike:
                 unlike, ends = "", answer.ends.aside  # what few causes do is hardly of many coefficients
             first = unlike if unlike and first == _CANNOT_NAME else _joined(first, unlike)

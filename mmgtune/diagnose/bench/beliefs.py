@@ -7,17 +7,20 @@ force of a formula.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 
 import numpy as np
 
 from ...arrays import FloatArray
+from ...circumstances import unmeasured
 from ...components import split_name
-from ...effects import Effect
+from ...effects import Effect, effects
 from ...fitting.box import Box, base_of, choose_targets
 from ...model import Model
+from ...profile import ShipProfile
+from ...trial import Trial
 
 FURTHEST = 5.0
 """Standard deviations of ships about its formula within which a target is looked for: what trials say and what is
@@ -34,15 +37,24 @@ class Beliefs:
     leeway    coefficients beside the targets that may move a little
     forms     parameters of the forms of effects, which move wherever their effect does
     formulas  targets from formulas that say how far ships scatter about them
+    acting    kinds of the effects that the profile has and that act on the trials: their forms always move
     """
 
     leeway: Mapping[str, float] = field(default_factory=dict)
     forms: Mapping[str, float] = field(default_factory=dict)
     formulas: Mapping[str, float] = field(default_factory=dict)
+    acting: frozenset[str] = frozenset()
 
     @classmethod
     def of(
-        cls, box: Box, loose: Sequence[str], share: float, shapes: Mapping[str, float], *, formulas: bool
+        cls,
+        box: Box,
+        loose: Sequence[str],
+        share: float,
+        shapes: Mapping[str, float],
+        acting: frozenset[str],
+        *,
+        formulas: bool,
     ) -> Beliefs:
         """Beliefs about coefficients known to a share of their values, and about forms with deviations in units of the
         profile; formulas: whether what is from one is known as well as ships scatter about it."""
@@ -58,21 +70,26 @@ class Beliefs:
             {name: deviation / float(box.part([name]).width[0]) for name, deviation in known.items()}
             for known in (shapes, {name: one for name, one in scatter.items() if name not in leeway})
         )
-        return cls(leeway, forms, tuned)
+        return cls(leeway, forms, tuned, acting)
 
     @property
     def deviations(self) -> Mapping[str, float]:
         """All together."""
         return {**self.leeway, **self.forms, **self.formulas}
 
+    @property
+    def of_acting(self) -> tuple[str, ...]:
+        """Parameters of the forms of effects that act anyway."""
+        return tuple(name for name in self.forms if split_name(name)[0] in self.acting)
+
     def form_of(self, effect: Effect) -> tuple[str, ...]:
         """Parameters of the form of an effect, which are free wherever the effect is."""
         return tuple(name for name in self.forms if name.startswith(f"{effect.kind}."))
 
     def moving_with(self, names: Sequence[str]) -> tuple[list[str], list[int]]:
-        """Form parameters that the effects among ``names`` still lack, and the indices of the names to keep: all but
-        form parameters of effects that are not among them."""
-        moving = {split_name(base_of(name))[0] for name in names if name not in self.forms}
+        """Form parameters that the effects among ``names``, and those that act anyway, still lack, and the indices of
+        the names to keep: all but form parameters of other effects."""
+        moving = self.acting | {split_name(base_of(name))[0] for name in names if name not in self.forms}
         asked = [name for name in self.forms if split_name(name)[0] in moving and name not in names]
         kept = [k for k, name in enumerate(names) if name not in self.forms or split_name(name)[0] in moving]
         return asked, kept
@@ -91,13 +108,24 @@ def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[
     return tuple(name for name in free if name not in targets and model.profile.value(name) != 0.0)
 
 
-def forms(model: Model, names: Sequence[str]) -> dict[str, float]:
-    """Parameters of the forms of all effects that any of the names is of, with their standard deviations."""
-    asked = {split_name(base_of(name))[0] for name in names}
+def acting_kinds(profile: ShipProfile, trials: Sequence[Trial]) -> frozenset[str]:
+    """Kinds of the effects that a profile has, whose forms are not known for certain, and that act on the trials."""
+    own = [effect for effect in effects() if effect.form and effect.kind in profile.sections]
+    idle = unmeasured(own, trials)
+
+    def acts(effect: Effect, symbol: str) -> bool:
+        name = f"{effect.kind}.{symbol}"
+        return name not in idle and profile.value(name) != effect.parameters[symbol].null
+
+    return frozenset(e.kind for e in own if any(acts(e, symbol) for symbol in e.parameters if symbol not in e.form))
+
+
+def forms(model: Model, kinds: Collection[str]) -> dict[str, float]:
+    """Parameters of the forms of the effects of these kinds, with their standard deviations."""
     return {
         f"{effect.kind}.{name}": deviation
         for effect in model.effects
-        if effect.kind in asked
+        if effect.kind in kinds
         for name, deviation in effect.form.items()
     }
 

@@ -24,7 +24,7 @@ from ...options import DiagnoseOptions
 from ...profile import ShipProfile, read_off, with_all_effects
 from ...trial import Coverage, Held, Trial, visited_by
 from ...trial.kinematics import motion_noise
-from .beliefs import FURTHEST, Beliefs, forms, let_go
+from .beliefs import FURTHEST, Beliefs, acting_kinds, forms, let_go
 from .noise import NoiseModel, by_channel, white
 from .runs import between, labels_of
 from .slopes import quick_slopes
@@ -110,8 +110,8 @@ class Workbench:
 
     @property
     def tuned_alone(self) -> tuple[str, ...]:
-        """What is re-tuned without any cause: the targets, and what has leeway."""
-        return (*self.targets, *self.believed.leeway)
+        """What is re-tuned without any cause: targets, what has leeway, and the forms of effects that act anyway."""
+        return (*self.targets, *self.believed.leeway, *self.believed.of_acting)
 
     def beliefs(self, names: Sequence[str], spreads: Mapping[str, float]) -> tuple[FloatArray, FloatArray] | None:
         """What is believed of what is free before any trial is looked at; None for nothing.
@@ -394,7 +394,9 @@ def make_workbench(
     objective = _in_noise(sigma, channels)
     cases = cases_of(list(trials), objective, model.inputs, model.draught)
     loose = let_go(own, targets, options.fixed) if options.leeway else ()
-    shapes = forms(model, names) if options.leeway else {}
+    anyway = acting_kinds(profile, trials) if options.leeway else frozenset()
+    moving = anyway | {split_name(base_of(name))[0] for name in names}
+    shapes = forms(model, moving) if options.leeway else {}
     box = make_box(model, tuple(dict.fromkeys((*targets, *loose, *names, *shapes))), options.a_r, FURTHEST)
     problem = FitProblem.of(
         model=model,
@@ -415,5 +417,5 @@ def make_workbench(
         problem,
         white(cases),
         held=held,
-        believed=Beliefs.of(box, loose, options.leeway, shapes, formulas=options.a_r is None),
+        believed=Beliefs.of(box, loose, options.leeway, shapes, anyway, formulas=options.a_r is None),
     )

@@ -66,7 +66,8 @@ less than half of the held-out error: something else is there, that it may stand
 
 NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up, unless all
-together leave nothing but noise of far more than noise: what stands for something else does not."""
+together leave nothing but noise of far more than noise: what stands for something else does not, but for three terms of
+which one has values of each run, as of an indicator that is off by a wave of the angle."""
 
 A_TENTH = 0.1
 """Share of an error that nothing explains up to which what removes it is not spoken of."""
@@ -173,7 +174,8 @@ class Belief:
             return NEXT_TO_NOTHING
         if not_told:
             return not_told
-        if sum(one.seen for one in brought) < NEEDED and (self.leftover.structured or not self.explains_all):
+        bends = self.leftover.structured or not self.explains_all or (terms > 2 and self.differs_by_run)
+        if sum(one.seen for one in brought) < NEEDED and bends:
             return "without any one of them the others, re-tuned, do nearly as well on the trials it was found on"
         if self.gain.mostly_remains:
             return "they leave most of the error on test trials"

@@ -20,7 +20,7 @@ from ...trial import Trial, visited_by
 from ...units import DIMENSIONLESS, NORMAL_95
 from ..bench.runs import FEWEST_GROUPS, IN_WORDS, groups_of, name_of
 from ..signatures.intervals import Estimate
-from ..signatures.wording import error_in_words, quantity, range_in_words
+from ..signatures.wording import LITTLE, error_in_words, quantity, range_in_words
 
 ALIKE = 0.2
 """Difference from the mean of all runs, over that, up to which values with a direction are much the same."""
@@ -276,13 +276,14 @@ class ByRun:
         """From the least to the largest, with what is common to all errors told once."""
         common = max(error or 0.0 for _, error in map(self.size, range(len(self.groups))))
         half, between = (error_in_words(NORMAL_95 * error, self.unit) for error in (common, beside))
-        of_all = self._number_of + self._of_all(beside)
+        of_all = self._number_of + self._of_all(beside, in_step=True)
         return f"{of_all}, known to ± {between} beside each other and to ± {half} all together"
 
-    def _of_all(self, error: float) -> str:
+    def _of_all(self, error: float, in_step: bool = False) -> str:
         """From the least to the largest, or that of one run and those of all others, which are alike.
 
-        error  standard error of a difference
+        error    standard error of a difference
+        in_step  whether values differ beyond doubt, however little
         """
         sizes = np.array([self.size(k)[0] for k in range(len(self.groups))])
         far = np.abs(sizes - np.median(sizes))
@@ -290,7 +291,8 @@ class ByRun:
         rest = np.delete(sizes, odd)
         off, apart = abs(sizes[odd] - rest.mean()), float(np.ptp(rest))
         if len(rest) < FEWEST_GROUPS or self._directed or off <= max(ODD * apart, CERTAIN * error):
-            return range_in_words(float(sizes.min()), float(sizes.max()), self.unit) + self._of_what
+            little = 0.0 if in_step else LITTLE
+            return range_in_words(float(sizes.min()), float(sizes.max()), self.unit, little) + self._of_what
         alike = range_in_words(float(rest.min()), float(rest.max()), self.unit)
         own = f"{quantity(float(sizes[odd]), None, self.unit)}{self._of_what} in {name_of(self.groups[odd])}"
         return f"{own} and {alike} in the other {len(rest)}"

@@ -71,6 +71,10 @@ NEAR = 0.1
 MOST_POINTS = 240
 """Points of a run's history that are kept."""
 
+IN_FEW, SEVERAL = 0.65, 4
+"""Share of the error in a third of the runs, of so many at least, from which the others are told well: a ship that is
+unlike her profile errs in all."""
+
 RUNS_DRAWN = 4
 """Runs whose history is kept: the worst."""
 
@@ -153,6 +157,12 @@ class Whereabouts:
             return f"the {LOGGED[self.channel]} from a second sensor in the same runs"
         best = self.strongest
         return TELLS[best[1]] if best else REPEAT
+
+    @property
+    def in_few(self) -> bool:
+        """Whether most of the error is in a few of the runs, and the others are told well."""
+        worst = sorted(self.runs.values(), reverse=True)[: math.ceil(len(self.runs) / 3)]
+        return len(self.runs) >= SEVERAL and sum(worst) >= IN_FEW
 
     def sentences(self) -> list[str]:
         """What of it is worth saying, in words."""

@@ -66,7 +66,7 @@ class _Without:
     def of(cls, bench: Workbench, run: str) -> _Without:
         coverage = Coverage.of(bench.trials, bench.model.L_pp)  # what is left may turn to one side alone
         keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
-        names = [name for name in bench.box.names if name not in bench.tuned_alone]
+        names = [name for name in bench.box.names if name not in (*bench.targets, *bench.believed.leeway)]
         rest = make_workbench(bench.model.profile, [bench.trials[i] for i in keep], bench.options, names, coverage)
         rest.targets, rest.believed, rest.slopes, rest.stop = bench.targets, bench.believed, bench.slopes, bench.stop
         rest.know(replace(bench.noise, cases=rest.problem.cases))

@@ -54,8 +54,9 @@ def base_fit(bench: Workbench) -> Point:
     apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
     starts = np.column_stack([end.unit for end in apart])
     point = bench.refit(names, starts, ends[0].offsets, tolerance=unnoticed(bench, ends[0].J))
-    names = bench.tuned_alone
-    point = replace(point, unit=np.concatenate([point.unit, bench.null(list(bench.believed.leeway))]))
+    loose = tuple(bench.believed.leeway)
+    names = (*point.names, *loose)
+    point = replace(point, names=names, unit=np.concatenate([point.unit, bench.null(loose)]))
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
         tolerance = unnoticed(bench, point.chi2, PRECISE)
         again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=tolerance)

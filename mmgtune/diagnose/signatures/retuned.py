@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 
 from ...components import effect_tag, split_name
 from ...documents import finite
+from ...effects import find_effect
 from ...phrases import listed
 from ...units import NORMAL_95
 from ..bench.workbench import Point, Workbench
@@ -28,6 +30,10 @@ LISTED = 3
 
 WEIGHED = ("particulars.",)
 """What has leeway that a user can weigh or work out: mass and inertia, with what moves along of the water."""
+
+IN_SURGE = "particulars.m_x_"
+"""Added mass in surge, a few per cent of what accelerates with it: by how much of all that it is off counts, since a
+thrust or resistance a little off does the same."""
 
 STEERED_BY = ("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r")
 """What has leeway that trials tell best of a hull: its linear derivatives in sway and yaw."""
@@ -60,7 +66,8 @@ class Retuned:
 
     label     what it is, in words
     before    pre-determined value, in the profile's unit; after: re-tuned, with its standard error, None at a bound
-    believed  standard deviation as a share of it of what has leeway; None of a target
+    believed  standard deviation as a share of it of what has leeway, of added mass in surge as a share of all mass that
+              accelerates; None of a target
     scatter   standard deviation of ships about the formula it is from, as a share of it; 0 where that is not known
     """
 
@@ -134,9 +141,10 @@ class Retuned:
 
 def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     """Targets of the ship herself at a point, those most surely far from their pre-determined values first, and values
-    of mass, inertia and the hull that the trials contradict."""
+    of mass, inertia, the hull and the forms of effects that act anyway, that the trials contradict."""
     known = [name for name in point.names if name in bench.believed.leeway]
     loose = [name for name in known if name.startswith(WEIGHED) or name in STEERED_BY]
+    loose += [name for name in bench.believed.of_acting if name in point.names]
     names = [name for name in point.names if name in bench.targets and not effect_tag(name)] + loose
     if not names:
         return []
@@ -149,8 +157,13 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
         stderr = None if at is None else float(np.sqrt(spread[at, at]) * box.width[k])
         section, symbol = split_name(name)
         field = profile.sections[section].component.fields[symbol]
-        believed = bench.options.leeway if name in loose else None
         pre, about = float(box.pre[k]), profile.coefficient(name).scatter
+        believed = bench.options.leeway if name in loose else None
+        if name == IN_SURGE:
+            B, L, C_b = (profile.value(f"particulars.{one}") for one in ("B", "L_pp", "C_b"))
+            believed = bench.options.leeway * (1.0 + 2.0 * C_b * B / L / pre)
+        if name in bench.believed.forms:
+            believed = bench.believed.forms[name] * float(box.width[k]) / abs(pre) if pre else math.inf
         scatter = about / abs(pre) if about and pre else 0.0
         found.append(Retuned(name, field.label, field.unit, pre, float(value), stderr, believed, scatter))
     told = [one for one in found if one.believed is None or one.far]
@@ -158,13 +171,14 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
 
 
 def weighed(moved: Sequence[Retuned], of_hull: bool = True, beside: bool = False) -> str:
-    """What the trials contradict of mass, inertia and the hull, in sentences; "" for nothing.
+    """What the trials contradict of mass, inertia, hull and forms of effects, in sentences; "" for nothing.
 
-    of_hull  whether of the hull too: where the trials are told, and by more than a few
+    of_hull  whether of hull and forms too: where the trials are told, and by more than a few
     beside   whether causes were found, whose formulas may leave what mass and inertia take up
     """
     far = [one for one in moved if one.believed is not None and one.far]
-    heavy = [one for one in far if one.name not in STEERED_BY]
+    forms = [one for one in far if effect_tag(one.name) and of_hull]
+    heavy = [one for one in far if one.name.startswith(WEIGHED)]
     hull = [one for one in far if one.name in STEERED_BY and of_hull]
     told = []
     if heavy:
@@ -181,9 +195,26 @@ def weighed(moved: Sequence[Retuned], of_hull: bool = True, beside: bool = False
             f"They are fitted best with {listed([one.roughly for one in hull])}, though no target: her hull may steer "
             f"otherwise than that of the profile, or {takes} up what other coefficients are off by."
         )
-    if heavy and hull and all((one.change or 0.0) > 0.0 for one in far):
+    if heavy and hull and all((one.change or 0.0) > 0.0 for one in (*heavy, *hull)):
         told.append("All of these are larger in shallow water.")
-    return " ".join(told) if heavy or not told else told[0].replace("They are", "The trials are", 1)
+    if hull and not heavy:
+        told[0] = told[0].replace("They are", "The trials are", 1)
+    told += [_of_form(tag, [one for one in forms if effect_tag(one.name) == tag]) for tag in _tags(forms)]
+    return " ".join(told)
+
+
+def _tags(moved: Sequence[Retuned]) -> list[str]:
+    return list(dict.fromkeys(effect_tag(one.name) for one in moved))
+
+
+def _of_form(tag: str, moved: Sequence[Retuned]) -> str:
+    """That the formulas of an effect which acts anyway are off, in a sentence."""
+    effect = find_effect(tag)
+    assert effect is not None
+    return (
+        f"The {effect.title} of the profile fits best with {listed([one.roughly for one in moved])}: its "
+        "formulas may be off by that for this ship."
+    )
 
 
 def in_words(moved: Sequence[Retuned]) -> str:

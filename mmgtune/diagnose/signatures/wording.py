@@ -48,15 +48,18 @@ CLOSE, LITTLE = 0.1, 0.03
 """Share of a range up to which its ends may be rounded, and share of them that a range worth more digits has."""
 
 
-def range_in_words(low: float, high: float, unit: str) -> str:
-    """From the least to the largest: "0.2 to 0.4 m/s", with as many digits as tell them apart."""
+def range_in_words(low: float, high: float, unit: str, little: float = LITTLE) -> str:
+    """From the least to the largest: "0.2 to 0.4 m/s", with as many digits as tell them apart.
+
+    little  share of a value by which they must differ to be told apart
+    """
     word, factor = _after_number(unit, max(abs(low), abs(high)))
     apart = abs(high - low) * factor
     ends = []
     for end in (low * factor, high * factor):
-        short = float(f"{end:.2g}")  # 590, not 5.9e+02
-        digits = max(0, -math.floor(math.log10(apart))) if apart > LITTLE * abs(end) else 0
-        while apart > LITTLE * abs(end) and abs(short - end) > CLOSE * apart:
+        short = round(end, 2) if unit in DIMENSIONLESS and abs(end) > 0.1 else float(f"{end:.2g}")  # 590, not 5.9e+02
+        digits = max(0, -math.floor(math.log10(apart))) if apart > little * abs(end) else 0
+        while apart > little * abs(end) and abs(short - end) > CLOSE * apart:
             short, digits = round(end, digits), digits + 1
         ends.append(f"{short:g}")
     return f"{' to '.join(dict.fromkeys(ends))}{word}"

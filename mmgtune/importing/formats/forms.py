@@ -55,7 +55,7 @@ def form_of(log: Path) -> str:
     if binary(content) and (of_version_4(content) or log.suffix.lower() == ".mat"):
         return "mat"  # where it is told why it cannot be read
     text = content.removeprefix(b"\xef\xbb\xbf")
-    if re.match(rb"\s*[$!][A-Z]{4,},", text):
+    if re.match(rb"\s*[$!][A-Z]{4,},", text) or _is_of_sentences(text):
         return "nmea"
     for begins, (kind, fix) in _OTHERS.items():
         if re.match(begins, text):
@@ -65,6 +65,16 @@ def form_of(log: Path) -> str:
         why, fix = "it is TOML, as profiles, splits and maps are", "give the log itself; a map goes behind --map"
         raise LogError(Problem("the file is no log", str(log), why, fix))
     return "csv"
+
+
+_SENTENCE = re.compile(rb"[^\r\n]{0,80}[$!][A-Z]{5},[^*\r\n]{0,80}\*[0-9A-Fa-f]{2}\s*")
+"""A line of NMEA 0183 behind a time stamp, a port or a block of tags."""
+
+
+def _is_of_sentences(text: bytes) -> bool:
+    """Whether most lines of the beginning of a log are sentences of NMEA 0183 with something before them."""
+    lines = [line for line in text.splitlines()[:-1] if line.strip()]
+    return bool(lines) and 2 * sum(_SENTENCE.fullmatch(line) is not None for line in lines) > len(lines)
 
 
 def _require_workbook(log: Path) -> None:

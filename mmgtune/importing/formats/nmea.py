@@ -10,6 +10,7 @@ import math
 import re
 from array import array
 from collections import Counter
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 
@@ -30,6 +31,11 @@ SENTENCES = {
     "ROT": "yaw rate", "RSA": "rudder", "RPM": "revolutions", "MWV": "wind", "MWD": "wind", "ZDA": "date",
 }  # fmt: skip
 POSITIONS = ("GGA", "RMC", "GLL")
+OF_ONE_SENSOR = (*POSITIONS, "VTG", "HDT", "THS", "ROT", "MWV", "MWD")
+"""Sentences that two sensors may send in turn, each of its own place or zero."""
+GYROCOMPASS = b"HE"
+OFTEN = 0.05
+"""Sentences of others over those of one talker from which they are no damage to its name."""
 _SPEED = {letter: factors("m/s")[unit] for letter, unit in (("K", "km/h"), ("M", "m/s"), ("N", "kn"))} | {"S": 0.44704}
 """Letters of units of speed; S is for statute miles per hour."""
 _PER_MINUTE = factors("rad/s")["deg/min"]
@@ -74,8 +80,9 @@ class _Channel:
 class _Parser:
     """One pass over the lines of a log."""
 
-    def __init__(self, primary: str, with_vtg: bool):
-        self.primary, self.with_vtg = primary, with_vtg
+    def __init__(self, primary: str, with_vtg: bool, talkers: Mapping[str, bytes]):
+        self.primary, self.with_vtg, self.talkers = primary, with_vtg, talkers
+        self.of_others: Counter[str] = Counter()
         self.channels: dict[str, _Channel] = {}
         self.waiting: dict[str, list[float]] = {}
         self.counts: Counter[str] = Counter()
@@ -97,6 +104,9 @@ class _Parser:
             return
         kind = match.group(2).decode()
         if kind not in SENTENCES:
+            return
+        if match.group(1) != self.talkers.get(kind, match.group(1)):
+            self.of_others[f"{match.group(1).decode()}{kind}"] += 1
             return
         if match.group(4) is None:
             self.unsigned += 1
@@ -236,7 +246,7 @@ def read_nmea(path: Path, log_map: LogMap) -> list[Record]:
     ]
     if problems:
         raise LogError(*problems)
-    parser = _Parser(primary or "GGA", bool(kinds["VTG"]))
+    parser = _Parser(primary or "GGA", bool(kinds["VTG"]), _talkers(path))
     with path.open("rb") as file:
         number = 1
         while raw := file.readline(LINE):
@@ -261,6 +271,31 @@ def _kinds(path: Path) -> Counter[str]:
     return Counter({kind: count for kind, count in found.items() if kind in SENTENCES})
 
 
+def _talkers(path: Path) -> dict[str, bytes]:
+    """For sentences that several talkers send in turn the one to listen to: a gyrocompass, or who sends most.
+
+    A receiver that goes over to more satellites changes its name once, and stays the same.
+    """
+    pattern = re.compile(rb"[$!]([A-Z]{2})(" + "|".join(OF_ONE_SENSOR).encode() + rb"),")
+    last: dict[bytes, bytes] = {}
+    counts: dict[bytes, Counter[bytes]] = {}
+    changes: Counter[bytes] = Counter()
+    with path.open("rb") as file:
+        while block := file.read(1 << 22):
+            block += file.readline(LINE)
+            for talker, kind in pattern.findall(block):
+                counts.setdefault(kind, Counter())[talker] += 1
+                changes[kind] += last.setdefault(kind, talker) != talker
+                last[kind] = talker
+    found = {}
+    for kind, talkers in counts.items():
+        (first, most), *others = talkers.most_common()
+        rest = talkers.total() - most
+        if others and rest > OFTEN * most and changes[kind] > 0.5 * rest:
+            found[kind.decode()] = GYROCOMPASS if GYROCOMPASS in talkers else first
+    return found
+
+
 def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
     """What was parsed in the program's units, in parts where the clock was set back."""
     start = parser.channels["latitude"].t[0]
@@ -268,6 +303,10 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
         f"NMEA 0183: {', '.join(f'{count} {kind}' for kind, count in parser.counts.most_common())}; "
         f"time and position from {parser.primary}" + (f", {parser.date}" if parser.date else "")
     ]
+    if parser.of_others:
+        heard = ", ".join(sorted(f"{talker.decode()}{kind}" for kind, talker in parser.talkers.items()))
+        others = ", ".join(f"{count} {name}" for name, count in parser.of_others.most_common())
+        notes.append(f"two sensors talk in turn: {heard} is taken, and {others} left out")
     if parser.bad:
         notes.append(f"{parser.bad} sentences with a bad checksum were dropped, the first in line {parser.first_bad}")
     if parser.unsigned:

@@ -12,13 +12,15 @@ from ...units import DEG
 from .finder import Finder
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
-from .orders import TURNS, rudders, shafts, side_of_circles
+from .orders import TURNS, Shaft, rudders, shafts, side_of_circles
 from .words import LOG_SPEED, ORDER, OTHER, ROLL, side_named, turns
 
 WAY = (0.01, 0.04)
 """Ship lengths that ships make with each turn of the propeller."""
 HARDLY = 1.6
 """Factor beyond those at which no ship is believed to make so much: the length is guessed from how she turns."""
+NEVER = 8.0
+"""Factor beyond those at which what turns is no propeller, nor an engine that drives one through a gear."""
 GEAR = 1.3
 """Factor between two columns of revolutions, from which one is of what turns before a gear."""
 
@@ -134,7 +136,8 @@ def _shafts_among(find: Finder, columns: Sequence[int], remark: str = "") -> boo
     for look in find.looks:
         found = shafts(look, columns, find.units_said, _rudder_angle(look, delta))
         for place, one in enumerate(found):
-            ranks[one.column] += 1.0 / (1.0 + place) + (2.0 if find.said[one.column].startswith("n") else 0.0)
+            named = find.said[one.column].startswith("n") and not _of_another(find, one)
+            ranks[one.column] += 1.0 / (1.0 + place) + (2.0 if named else 0.0)
             for unit, way in one.advance.items():
                 if np.isfinite(way):
                     per_column[one.column, unit].append(way)
@@ -145,6 +148,12 @@ def _shafts_among(find: Finder, columns: Sequence[int], remark: str = "") -> boo
         column, why, clear = _behind_the_gear(find, column, columns, per_column)
         _shaft(find, name, column, ranks, per_column, (*why, *((remark,) if remark else ())), clear)
     return bool(among)
+
+
+def _of_another(find: Finder, shaft: Shaft) -> bool:
+    """Whether revolutions in a unit that is said are those of what no propeller is driven by, as of a turbocharger."""
+    way = shaft.advance.get(_unit_said(find, shaft.column), np.nan)
+    return bool(way < WAY[0] / NEVER or way > WAY[1] * NEVER)
 
 
 def _behind_the_gear(

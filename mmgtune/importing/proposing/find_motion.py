@@ -17,22 +17,23 @@ from .finder import ROUGH, Finder
 from .guess import LIKELY, SURE, Guess
 from .look import Look
 from .motions import Match, courses, speeds, through_water, velocities, yaw_rates
-from .words import LOG_SPEED, ORDER, OTHER, ROLL
+from .words import LOG_SPEED, ORDER, OTHER, ROLL, plain
 
 FACTOR = 0.03
 """Share by which a speed may be more or less than that of the positions throughout and still be surely what it is."""
 GOES_WITH = 0.6
 """Correlation with the sway from which a column called so is that."""
+STRAIGHT, FEW = 0.1, 5
+"""Drift as a share of the speed up to which she goes straight, and windows of a log that show how fast then."""
 CLEAR = 0.15
 """Standard error of the share of what drift takes off a speed, from which that share tells which speed it is."""
 
 
 def yaw_rate(find: Finder) -> None:
     votes: dict[tuple[int, str, bool], list[tuple[float, float]]] = defaultdict(list)
+    pool = [k for k in find.pool("psi", "cog", "x", "y", "delta") if not _called_sway(find, k)]
     for look in find.looks:
-        for match, correlation, factor in yaw_rates(
-            look, find.pool("psi", "cog", "x", "y", "delta"), find.units_said
-        ).values():
+        for match, correlation, factor in yaw_rates(look, pool, find.units_said).values():
             off = abs(np.log(factor / units.factors("rad/s")[match.unit]))
             votes[match.column, match.unit, match.minus].append((abs(correlation) ** 4 - 2.0 * off, correlation))
     if not votes:
@@ -51,6 +52,11 @@ def yaw_rate(find: Finder) -> None:
     if others:
         evidence.append(f"it fits better than {', '.join(find.shown(k) for k in others[:3])}")
     find.add(Guess("r", column, own, tuple(evidence), SURE if abs(correlation) > 0.95 else LIKELY))
+
+
+def _called_sway(find: Finder, k: int) -> bool:
+    """Whether a column is called a velocity abeam, which goes with the yaw rate, by more than a letter."""
+    return find.said[k] == "v" and len(plain(find.first.names[k])) > 2
 
 
 def velocity(find: Finder) -> None:
@@ -262,15 +268,22 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
 
 
 def _factor(find: Finder, column: int, unit: str, along: bool) -> float:
-    """How many times the speed of the positions, ahead or ``along`` the track, a column says, usually."""
-    ratios = []
+    """How many times the speed of the positions, ahead or ``along`` the track, a column says, usually; where she goes
+    straight, which are the same then, if she does."""
+    ratios, straight = [], []
     for look in find.looks:
         with np.errstate(all="ignore"):
             # In a turn a ship drifts, and her speed along the track is more than that ahead.
             of = look.speed if along else np.abs(look.ahead)
             ratio = np.abs(look.mean(column)) * units.factors("m/s")[unit] / of
-        ratios.append(ratio[np.isfinite(ratio) & (np.abs(look.ahead) > 0.5 * look.usual_speed)])
-    every = np.concatenate(ratios) if ratios else np.empty(0)
+        there = np.isfinite(ratio) & (np.abs(look.ahead) > 0.5 * look.usual_speed)
+        ratios.append(ratio[there])
+        straight.append((np.abs(look.abeam) < STRAIGHT * look.speed)[there])
+    if not ratios:
+        return 1.0
+    every, those = np.concatenate(ratios), np.concatenate(straight)
+    if those.sum() >= FEW:
+        every = every[those]
     return float(np.median(every)) if len(every) else 1.0
 
 

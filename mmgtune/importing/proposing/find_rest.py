@@ -16,6 +16,7 @@ from ..maps.quantities import known_quantity, meaning, quantity_of
 from .finder import FEW_DIGITS, Finder
 from .guess import ASKED, LIKELY, MARK, Guess
 from .joined import is_whole
+from .misnamed import agrees
 
 
 def by_name(find: Finder) -> None:
@@ -73,6 +74,8 @@ def _makes_no_sense(find: Finder, name: str, k: int) -> bool:
         return bool({"latitude", "longitude"} & named)
     if name in ("latitude", "longitude"):
         return "x" in have
+    if name in ("u", "v", "sog", "cog") and find.looks and agrees(find, k):
+        return True  # what is known already
     if name in ("u", "v", "sog", "cog") and find.looks:
         find.notes.append(
             f"{find.shown(k)} is called {meaning(name).split(',')[0]}, and contradicts the positions: it is left out"

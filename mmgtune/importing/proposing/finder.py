@@ -15,7 +15,7 @@ from .clocks import Clock
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
 from .sampling import Sample
-from .words import numbered, of_starboard, ordered, plain, quantity_named, unit_named
+from .words import ORDER, helms, numbered, of_starboard, ordered, plain, quantity_named, unit_named
 
 MOST_LOGS = 8
 """Logs whose motion is looked at."""
@@ -57,6 +57,8 @@ class Finder:
         self.said = ["" if k in counted else quantity_named(name) for k, name in enumerate(shown)]
         for k in of_starboard(self.first.names, self.said):
             self.said[k] += "_stbd"
+        for k in helms(self.first.names, self.said):
+            self.said[k] = ORDER
         # North and east by a letter each; alone, n is what propellers turn with.
         letters = {plain(name): k for k, name in enumerate(self.first.names)}
         if {"n", "e"} <= set(letters):

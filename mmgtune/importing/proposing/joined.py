@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -88,11 +88,27 @@ def _read_ddmm(find: Finder) -> None:
             known = values[np.isfinite(values)]
             can.append(len(known) > 0 and bool(np.all(np.abs(of_ddmm(known)) <= MOST[name])))
             must.append(bool(np.max(np.abs(known), initial=0.0) > MOST[name]))
+        if _are_exchanged(find, pair):
+            lat, lon = (find.shown(k) for k in pair)
+            find.notes.append(f"{lat} is beyond 90 deg, and {lon} is not: they are taken for each other, exchanged")
+            find.said[pair[0]], find.said[pair[1]] = find.said[pair[1]], find.said[pair[0]]
+            return
         if all(can) and any(must):
             find.samples = [_in_degrees(one, pair) for one in find.samples]
             find.first = find.samples[0]
             find.ddmm.update(pair)
             return
+
+
+def _are_exchanged(find: Finder, pair: Sequence[int]) -> bool:
+    """Whether what is called a latitude is the longitude in degrees, and the other way round."""
+    lat, lon = (np.concatenate([np.abs(one.numbers[k]) for one in find.samples]) for k in pair)
+    known = np.isfinite(lat) & np.isfinite(lon)
+    return (
+        bool(known.any())
+        and MOST["latitude"] < lat[known].min() <= lat[known].max() <= MOST["longitude"]
+        and bool(lon[known].max() <= MOST["latitude"])
+    )
 
 
 def _in_degrees(sample: Sample, columns: Collection[int]) -> Sample:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from .finder import ROUGH, Finder
 from .look import Look
@@ -27,10 +27,20 @@ def doubt_units(find: Finder) -> None:
         find.units_wrong[k], find.units_said[k] = find.units_said[k], ""
 
 
+def agrees(find: Finder, k: int) -> bool:
+    """Whether a column is a rate, a speed or a course, as its name says, in one log at least."""
+    fits = _fits(find, k)
+    return fits is not None and any(fits(look, k, find.units_said) for look in find.looks)
+
+
+def _fits(find: Finder, k: int) -> Callable[[Look, int, Sequence[str]], bool] | None:
+    return {"r": _rate, "cog": _course, "u": _speed, "sog": _speed, LOG_SPEED: _speed}.get(find.said[k])
+
+
 def _elsewhere(find: Finder, k: int) -> bool:
     """Whether a column is what its name says in most logs, but in none with the unit that its name says."""
-    fits = {"r": _rate, "cog": _course, "u": _speed, "sog": _speed, LOG_SPEED: _speed}.get(find.said[k])
-    if fits is None or any(fits(look, k, find.units_said) for look in find.looks):
+    fits = _fits(find, k)
+    if fits is None or agrees(find, k):
         return False
     free = [*find.units_said[:k], "", *find.units_said[k + 1 :]]
     return 2 * sum(fits(look, k, free) for look in find.looks) > len(find.looks)

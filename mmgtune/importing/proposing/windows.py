@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...arrays import BoolArray, FloatArray
+from ...arrays import BoolArray, FloatArray, IntArray
 from ...trial.checks.motion_checks import spikes
 from ...trial.headings import unwrapped
 from ..cells.seldom import held
@@ -19,8 +19,9 @@ MOST = 120
 """Windows of a log."""
 FEW = 12
 """Windows of a log of few rows, if these are three in each: of runs logged every ten seconds."""
-ROWS = 12_000
-"""Rows that are looked at, spread over the log."""
+ROWS, PARTS, PART = 12_000, 12, 400
+"""Rows of a log that is looked at as a whole; of a longer one, so many parts of so many rows in which most happens,
+since manoeuvres are shorter than a hundredth of a day."""
 SELDOM = 3.0
 """For so many of its usual steps a value of a column logged seldom stands."""
 PAUSE = 10.0
@@ -43,8 +44,8 @@ class Windows:
         best = np.maximum.accumulate(np.where(known, t, -np.inf))
         kept = np.flatnonzero(known & (np.concatenate([[True], t[1:] > best[:-1]])))
         columns = [held(one[kept], SELDOM) for one in columns]
-        every = max(1, len(kept) // ROWS)
-        kept, columns = kept[::every], [one[::every] for one in columns]
+        busy = _busiest(columns, len(kept))
+        kept, columns = kept[busy], [one[busy] for one in columns]
         self.t = t[kept]
         self.rows = kept
         resumed = np.zeros(len(kept), bool)
@@ -103,6 +104,22 @@ class Windows:
     def enough(self) -> bool:
         """Whether there is a motion to look at."""
         return len(self.edges) > 8
+
+
+def _busiest(columns: Sequence[FloatArray], n_rows: int) -> IntArray:
+    """Rows of the parts of a long log in which columns change most, beside how much they change in all; every row of
+    another."""
+    if n_rows <= ROWS:
+        return np.arange(n_rows)
+    parts = np.arange(n_rows // PART * PART).reshape(-1, PART)
+    busy = np.zeros(len(parts))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of columns without numbers in a part
+        for one in columns:
+            spread = np.nanstd(one)
+            if spread > 0.0:
+                busy += np.nan_to_num(np.nanstd(one[parts], axis=1) / spread)
+    return np.asarray(parts[np.sort(np.argsort(-busy, kind="stable")[:PARTS])]).ravel()
 
 
 def period(values: FloatArray, resumed: BoolArray) -> float:

@@ -13,32 +13,40 @@ from ..cells.headers import bare, unit_in
 DATE, TIME, ROLL, ORDER, LOG_SPEED, OTHER = "date", "time", "roll", "order", "log speed", "other"
 """What names may say besides quantities: OTHER is anything that no trial holds."""
 
-_PORT = r"\b(port|ps|p|bb|babord|backbord|bakboord|babor|left|links|gauche)\b|左"
-_STARBOARD = r"\b(st(a?r?)b(oar)?d|sb|st ?b|tribord|steuerbord|stuurboord|estribor|right|rechts|droite)\b|右"
+_PORT = r"\b(port|ps|p|bb|babord|backbord|bakboord|babor|left|links|gauche|лб)\b|\bлев|左"
+_STARBOARD = r"\b(st(a?r?)b(oar)?d|sb|st ?b|tribord|steuerbord|stuurboord|estribor|right|rechts|droite|пб)\b|\bправ|右"
 
-_STEERED = r"(rudder|rud|ruder|helm|roer|gouvern|timon|barre|rpm|speed|course|heading|kurs)"
+_STEERED = (
+    r"(rudder|rud|rsa|ruder|steering|prop|shaft|helm|roer|gouvern|timon|barre|rpm|speed|course|heading|kurs"
+    r"|рул|оборот|курс)"
+)
 _TELEGRAPH = r"telegra(ph|f)|\beot\b|テレグラフ"
-_ORDERED = r"(ord|cmd|comm?and|set|soll|gewenst|consigne|demand|desired|ref)"
+_ORDERED = r"(\bsp\b|ord|cmd|comm?and|set|soll|gewenst|consigne|demand|desired|ref|задан)"
+
+_OF_A_LOG = r"\b(stw|vbw|vlw|speed|vel|velocity|em log|doppler|dvl)\b"
 
 _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("wind_speed_app", (
         r"(?<!gesch)wind.*(rel|app|scheinbar|schijnbaar)", r"(rel|app|scheinbar|schijnbaar)\w*[ .]*wind", r"vent app",
-        r"viento (rel|ap)", r"awa", r"aws", r"相対風", r"视风", r"相对风",
+        r"viento (rel|ap)", r"(кажущ|относит)\w* вет", r"awa", r"aws", r"相対風", r"视风", r"相对风",
     )),
     ("wind_speed", (
-        r"(?<!gesch)wind", r"\bvent", r"viento", r"vento", r"\btwd\b", r"\btws\b", r"風", r"风", r"풍",
+        r"(?<!gesch)wind", r"\bvent", r"viento", r"vento", r"\btwd\b", r"\btws\b", r"\bвет(е?р)", r"風", r"风", r"풍",
     )),
     (OTHER, (
         r"thrust\b(?!er)", r"torque", r"power", r"\bkw\b", r"fuel", r"temp", r"pressure", r"druck", r"draft",
         r"draught", r"trim\b", r"heave", r"schub", r"drehmoment", r"leistung", r"poussee", r"couple", r"puissance",
-        r"empuje", r"推力", r"トルク", r"turbo", r"generator", r"alternat", r"\bpump", r"\bdg ?\d", r"\bfan\b",
+        r"empuje", r"推力", r"トルク", r"turbo", r"\bt ?c ?\d* (rpm|speed)", r"governor", r"\bindex\b", r"generator",
+        r"alternat", r"\bpump", r"\bdg ?\d",
+        r"\bfan\b", r"\btrq\b", r"\bk ?nm\b", r"\bpwr\b", r"\bload\b", r"момент", r"мощност", r"топлив", r"температ",
+        r"давлен", r"осадк", r"дифферент",
     )),
     (OTHER, (
         r"\bdist\b", r"distan[cz]", r"afstand", r"odomet", r"\bweg\b", r"\btrip\b", r"mileage", r"sailed", r"航程",
     )),
     (ROLL, (
         r"roll", r"heel", r"kranken", r"krangung", r"rollen", r"gite", r"roulis", r"escora", r"balanceo", r"slinger",
-        r"pitch", r"stampf", r"tangage", r"横揺", r"横摇", r"縦揺",
+        r"pitch", r"stampf", r"tangage", r"\bкрен", r"качк", r"横揺", r"横摇", r"縦揺",
     )),
     ("wave_height", (
         r"wave.*(h|height)", r"\bhs\b", r"wellenhohe", r"hauteur.*vague", r"波高",
@@ -53,10 +61,11 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"current.*(sp|vel|drift)", r"stromgeschw", r"流速",
     )),
     ("depth", (
-        r"depth", r"wassertiefe", r"\btiefe", r"profond", r"diepte", r"水深",
+        r"depth", r"wassertiefe", r"\btiefe", r"profond", r"diepte", r"глубин", r"水深",
     )),
     (ORDER, (
         rf"{_STEERED}.*{_ORDERED}", rf"{_ORDERED}\w*[ .]*{_STEERED}", r"指令", _TELEGRAPH,
+        r"\b(order(ed)?|cmd|command(ed)?|demand(ed)?|set ?point)\b",
     )),
     ("n_bow", (
         r"bow.*thr", r"bugstrahl", r"boegschroef", r"etrave", r"バウスラスタ",
@@ -64,43 +73,54 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("n_stern", (
         r"stern.*thr", r"heckstrahl", r"スターンスラスタ",
     )),
+    ("v", (
+        rf"{_OF_A_LOG}.*\b(tra(ns\w*)?|lat(eral)?|athwart\w*)\b",
+    )),
+    ("u", (
+        rf"{_OF_A_LOG}.*\b(lon|long|longi\w*)\b",
+    )),
     ("latitude", (
-        r"\blat", r"breite", r"latitud", r"緯度", r"纬度", r"위도",
+        r"\blat", r"breite", r"latitud", r"широт", r"緯度", r"纬度", r"위도",
     )),
     ("longitude", (
-        r"\blon", r"\blng\b", r"l(a|ae)nge\b", r"l(a|ae)ngen(grad|min)", r"longitud", r"lengte", r"経度", r"经度",
+        r"\blon", r"\blng\b", r"l(a|ae)nge\b", r"l(a|ae)ngen(grad|min)", r"longitud", r"lengte", r"долгот", r"経度",
+        r"经度",
         r"경도",
     )),
     ("cog", (
         r"\bcog\b", r"course.*ground", r"kurs.*(grund|grunn)", r"\bkurs u ?g\b", r"\bkug\b", r"\bkueg\b",
         r"grondkoers", r"koers.*grond", r"\broute\b", r"rumbo.*(fondo|efectivo)", r"track angle", r"shinro",
-        r"\bcourse\b", r"\btrack\b", r"rotta", r"对地航向", r"対地針路", r"針路",
+        r"\bcourse\b", r"\btrack\b", r"rotta", r"путев\w* угол", r"курс\w* .*(грунт|путев)", r"对地航向", r"対地針路",
+        r"針路",
         r"침로",
     )),
     ("sog", (
         r"\bsog\b", r"speed.*(ground|\bog\b)", r"\bfug\b", r"fahrt uber grund", r"grondsnelheid", r"vitesse.*fond",
-        r"velocidad.*fondo", r"对地航速", r"対地速力", r"gps.*(speed|vel)",
+        r"velocidad.*fondo", r"скорост\w*.*грунт", r"对地航速", r"対地速力", r"gps.*(speed|vel)",
     )),
     (LOG_SPEED, (
         r"\bstw\b", r"\bspeed.*(water|log)", r"\bfdw\b", r"fahrt durch", r"vitesse surface", r"对水", r"対水",
         r"\blog speed", r"\blogge\b", r"\b(em|doppler|dvl|speed|ship s) ?log\b", r"^log( (kn|kts?|knots|ms|m s))?$",
-        r"corredera", r"\bloch\b", r"solcometro",
+        r"corredera", r"\bloch\b", r"solcometro", r"\bлаг(а|у)?\b", r"скорост\w*.*вод",
     )),
     ("r", (
         r"\brot\b", r"yaw ?(rate|vel|ang)", r"yawrate", r"rate of turn", r"turn ?rate", r"angvel", r"ang vel",
         r"gyro rate", r"gier(rate|geschw)", r"drehrate", r"dreh ?geschw", r"wende",
         r"vitesse.*(giration|lacet|rotation)", r"lacet rate", r"velocidad.*(guin|giro)", r"draaisnelheid",
-        r"gier ?snelheid", r"bochtsnelheid", r"角速度", r"回頭", r"转向率", r"转艏", r"旋回", r"\br\b", r"선회",
+        r"gier ?snelheid", r"bochtsnelheid", r"углов\w* скор", r"скор\w* (поворот|рыск)", r"角速度", r"回頭", r"转向率",
+        r"转艏", r"旋回", r"\br\b", r"선회",
     )),
     ("psi", (
         r"\bhead", r"\bhdg\b", r"\bhdt\b", r"gyro", r"compass", r"\bpsi\b", r"kompass", r"\byaw\b", r"kurswinkel",
         r"steuerkurs", r"voraus ?richt", r"\bkurs\b", r"\bcap\b", r"\brumbo\b", r"proa", r"koers", r"voorligg",
-        r"vorlieg", r"stevning", r"sen(sh|sy)u ?ho", r"giroscop", r"azim", r"\bprora", r"stefning", r"kurssi", r"方位",
+        r"vorlieg", r"stevning", r"sen(sh|sy)u ?ho", r"giroscop", r"azim", r"\bprora", r"stefning", r"kurssi",
+        r"\bкурс", r"компас", r"方位",
         r"艏向", r"航向", r"선수",
     )),
     ("delta", (
-        r"rudder", r"\brud\b", r"\bdelta\b", r"ruder", r"helm", r"roer", r"gouvern", r"timon", r"timone", r"leme",
-        r"\bror\b", r"rorvinkel", r"barre", r"舵", r"타각",
+        r"rudder", r"\brsa\b", r"\bsteer", r"\brud\b", r"\bdelta\b", r"ruder", r"helm", r"roer", r"gouvern", r"timon",
+        r"timone", r"leme",
+        r"\bror\b", r"rorvinkel", r"barre", r"\bрул", r"\bперо\b", r"舵", r"타각",
     )),
     ("u", (
         r"\b(v|vel|velocity|speed) n\b",
@@ -117,35 +137,40 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("n", (
         r"\brpm\b", r"\brps\b", r"\brev", r"\bn\b", r"\bn prop", r"prop", r"shaft", r"drehzahl", r"welle",
         r"schraube", r"toeren", r"schroef", r"\bas\b", r"\btours?\b", r"helice", r"\barbre\b", r"revol", r"giri",
-        r"elica", r"varvtal", r"omdr", r"转速", r"回転", r"회전", r"\bregime\b",
+        r"elica", r"varvtal", r"omdr", r"оборот", r"\bвинт", r"частот\w* вращ", r"转速", r"回転", r"회전",
+        r"\bregime\b",
         r"(engine|motor|maschinen?|machine|\bm ?e) ?(speed|vitesse|geschw)", r"(speed|vitesse) (engine|moteur)",
     )),
     ("v", (
         r"sway", r"\bvm?\b", r"\bvm vel", r"lateral", r"abeam", r"transvers", r"quer", r"dwars", r"travers",
+        r"поперечн",
         r"\bv[ _]?y\b", r"vely\b", r"vel y", r"v east", r"east.*vel", r"vel.*east", r"左右速", r"横速", r"横向速",
     )),
     ("u", (
         r"surge", r"\bu\b", r"\bu vel", r"ahead", r"longitudinal", r"langs", r"voraus", r"forward", r"vooruit",
         r"\bv[ _]?x\b", r"velx\b", r"vel x", r"v north", r"north.*vel", r"vel.*north", r"speed", r"velocity",
-        r"fahrt", r"geschw", r"snelheid", r"vitesse", r"velocidad", r"velocita", r"前後速", r"纵向速", r"速力",
+        r"fahrt", r"geschw", r"snelheid", r"vitesse", r"velocidad", r"velocita", r"продольн", r"скорост", r"前後速",
+        r"纵向速", r"速力",
         r"航速", r"속력",
     )),
     ("x", (
-        r"north", r"nord", r"noord", r"norte", r"\bx\b", r"\bx ?pos", r"pos ?x", r"\bx ?0\b", r"北",
+        r"north", r"nord", r"noord", r"norte", r"\bx\b", r"\bx ?pos", r"pos ?x", r"\bx ?0\b", r"\bсевер", r"北",
     )),
     ("y", (
-        r"east", r"\best\b", r"\bost", r"oost", r"\beste\b", r"\by\b", r"\by ?pos", r"pos ?y", r"\by ?0\b", r"東",
+        r"east", r"\best\b", r"\bost", r"oost", r"\beste\b", r"\by\b", r"\by ?pos", r"pos ?y", r"\by ?0\b", r"\bвосто",
+        r"東",
         r"东",
     )),
     (DATE, (
-        r"\bdate\b", r"datum", r"fecha", r"\bdata\b", r"日付", r"日期", r"\b(day|month|year)\b",
+        r"\bdate\b", r"datum", r"fecha", r"^data$", r"\bdata (e )?h?ora", r"\bдата", r"日付", r"日期",
+        r"\b(day|month|year)\b",
         r"\b(tag|monat|jahr)\b", r"\b(dag|maand|jaar)\b", r"\b(jour|mois|annee)\b", r"\b(dia|mes|ano)\b",
         r"\b(giorno|mese|anno)\b",
     )),
     (TIME, (
         r"\btime", r"\bt\b", r"zeit", r"\buhr", r"temps", r"tijd", r"tiempo", r"\bhora", r"heure", r"tempo\b",
         r"\butc\b", r"\bgmt\b", r"stamp", r"sec(ond)?s?\b", r"sekunde", r"klok", r"時", r"时", r"시간", r"datetime",
-        r"aika", r"\btid",
+        r"aika", r"\btid", r"\bврем", r"секунд",
     )),
 )  # fmt: skip
 """Quantities by what their names have in them; what stands first is looked for first."""
@@ -156,10 +181,11 @@ _DRIVES = ("delta", "n")
 _SIDES = (re.compile(_PORT), re.compile(_STARBOARD))
 
 _SHAFT = re.compile(
-    r"shaft|prop|screw|welle|schraube|schroef|\bas\b|helice|\barbre|elica|\bejes?\b|\basse\b|aksel|propell|軸|プロペラ|轴|桨"
+    r"shaft|prop|screw|welle|schraube|schroef|\bas\b|helice|\barbre|elica|\bejes?\b|\basse\b|aksel|propell|\bвал|винт|軸|プロペラ|轴|桨"
 )
 _ENGINE = re.compile(
-    r"\bm ?e\b|engine|motor|moteur|masch|machine|maskin|macchina|maquina|diesel|\bhm\b|\bmcr\b|主機|主机|엔진|機関"
+    r"\bm ?e\b|engine|motor|moteur|masch|machine|maskin|macchina|maquina|diesel|двигат"
+    r"|\bhm\b|\bmcr\b|主機|主机|엔진|機関"
 )
 
 _UNITS = {
@@ -179,7 +205,9 @@ _UNITS = {
     "min-1": "rpm", "min^-1": "rpm", "min\u22121": "rpm", "obr/min": "rpm",
     "varv/min": "rpm", "omdr/min": "rpm", "rps": "rps", "rev/s": "rps", "u/s": "rps", "tr/s": "rps", "hz": "1/s",
     "sek": "s", "sec": "s", "msec": "ms", "metres": "m", "meter": "m", "metros": "m", "米": "m", "メートル": "m",
-    "秒": "s", "초": "s",
+    "秒": "s", "초": "s", "м": "m", "м/с": "m/s", "км/ч": "km/h", "уз": "kn", "узл": "kn", "узлы": "kn", "узлов": "kn",
+    "рад": "rad", "рад/с": "rad/s", "град": "deg", "град/с": "deg/s", "град/мин": "deg/min", "об/мин": "rpm",
+    "об/с": "rps", "сек": "s", "гон": "gon",
 }  # fmt: skip
 """Names of units beyond those that maps know, as other languages and names without brackets write them."""
 
@@ -203,6 +231,8 @@ def quantity_named(name: str) -> str:
     if part != name and part.isalpha() and (found := quantity_named(part)) in (TIME, DATE):
         return found  # wind.t is a time
     found = next((quantity for quantity, pattern in _PATTERNS if pattern.search(text)), "")
+    if found == DATE and part != name:
+        return quantity_named(part)  # data.eta is of a table called data
     if found in ("wind_speed", "wind_speed_app") and _DIRECTION.search(text):
         return found.replace("speed", "dir")
     if found in ("delta", "n"):
@@ -224,6 +254,16 @@ def of_starboard(names: Sequence[str], said: Sequence[str]) -> list[int]:
         for k, (name, one) in enumerate(zip(names, said, strict=True))
         if one in _DRIVES and re.sub(r"\bs\b", "p", plain(name)) in to_port
     ]
+
+
+def helms(names: Sequence[str], said: Sequence[str]) -> list[int]:
+    """Which columns are called a helm, beside others that are called a rudder, which follows it.
+
+    said  what each name says, as ``quantity_named`` has it
+    """
+    of_rudder = [k for k, one in enumerate(said) if one.startswith("delta")]
+    found = [k for k in of_rudder if re.search(r"\bhelm", plain(names[k]))]
+    return found if len(found) < len(of_rudder) else []
 
 
 NUMBERED = 5

@@ -54,6 +54,13 @@ WANDER = 4
 TURNED, FEWEST_MOVING = 0.3, 8
 """Angle [rad] that the heading turns by at least in a trial whose speeds cannot stand still, and samples of it."""
 
+TO_AND_FRO, STRIDE, FEWEST_SCATTERED = 3.0, 20, 40
+"""How many times the way from sample to sample, over so many of them, what is measured must go to and fro by, usually,
+and samples it takes to tell."""
+
+FAR_APART, TURNED_APART, OF_EXTENT = 5.0, 1.5 * DEG, 0.02
+"""Metres or, of a model, share of all the way, and angle [rad] from which it is spoken of."""
+
 FREER = 2.0
 """What the misfit counts of a reading that has two numbers to choose, among those that have none."""
 
@@ -64,6 +71,7 @@ def motion_findings(trial: Trial, where: str) -> list[Finding]:
         *_gaps(trial, where),
         *_jumps(trial, where),
         *_spikes(trial, where),
+        *_scattered(trial, where),
         *_yaw(trial, where),
         *_positions(trial, where),
     ]
@@ -151,6 +159,37 @@ def _spikes(trial: Trial, where: str) -> list[Finding]:
                     "mark them as NaN" if name in MOTION else "replace them by interpolation",
                 )
             )
+    return found
+
+
+def _scattered(trial: Trial, where: str) -> list[Finding]:
+    """Positions or headings that go to and fro from one sample to the next, as where two receivers log in turn."""
+    found = []
+    for names, least, unit in ((("x", "y"), FAR_APART, "m"), (("psi",), TURNED_APART, "deg")):
+        values = np.stack([trial.columns[name] for name in names])
+        if values.shape[1] < FEWEST_SCATTERED:
+            continue
+        off = np.linalg.norm(values[:, 1:-1] - 0.5 * (values[:, :-2] + values[:, 2:]), axis=0)
+        way = np.linalg.norm(values[:, STRIDE:] - values[:, :-STRIDE], axis=0) / STRIDE
+        if not (np.isfinite(off).sum() >= FEWEST_SCATTERED and np.isfinite(way).any()):
+            continue
+        further = np.linalg.norm(values[:, len(off) // 4 :] - values[:, : values.shape[1] - len(off) // 4], axis=0)
+        usual, extent = float(np.nanmedian(off)), float(np.max(np.nanmax(values, axis=1) - np.nanmin(values, axis=1)))
+        least = min(least, OF_EXTENT * extent) if unit == "m" else least
+        at_rest = unit == "m" and float(np.nanmedian(further)) <= 2.0 * usual
+        if at_rest or usual < max(TO_AND_FRO * float(np.nanmedian(way)), least):
+            continue
+        size, what = usual / (DEG if unit == "deg" else 1.0), " and ".join(f"'{name}'" for name in names)
+        found.append(
+            Finding(
+                "warning",
+                f"{what} go{'es' if len(names) == 1 else ''} to and fro by {size:.2g} {unit} from sample to sample",
+                f"{where}, column '{names[0]}'",
+                "several times the way from one to the next, as where two sensors log in turn, or one is very noisy",
+                "import the log of one sensor alone, or leave out what does not belong to it",
+                "scattered",
+            )
+        )
     return found
 
 
