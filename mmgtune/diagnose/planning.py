@@ -40,7 +40,7 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven | VoyageSet, options:
         f"compares  {bench.problem.n_residuals} differences of {', '.join(bench.channels)}; back end {options.backend}",
         f"targets   within {width_words(options.a_r, scatters=FURTHEST)} of their values: {', '.join(bench.targets)}",
         *(
-            (f"leeway    {100.0 * options.leeway:.3g} % of their values: {', '.join(bench.believed.leeway)}",)
+            (f"leeway    up to {100.0 * options.leeway:.3g} % of their values: {', '.join(bench.believed.leeway)}",)
             if bench.believed.leeway
             else ()
         ),

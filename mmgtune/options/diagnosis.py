@@ -26,7 +26,8 @@ class DiagnoseOptions(SimulationOptions):
     leeway: float = choice(
         0.05,
         "How well coefficients of the hull, and of how its wake changes, that are not targets are known, as a share of "
-        "their values: the standard deviation they are let go by. 0 holds them, as for voyages.",
+        "their values: the standard deviation they are let go by, and a fifth to four tenths of it those of the forces "
+        "of propeller and rudder. 0 holds them, as for voyages.",
         least=0.0,
         most=0.5,
     )

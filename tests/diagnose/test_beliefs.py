@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator
-from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.answering.detecting import told_apart
-from mmgtune.diagnose.bench.beliefs import let_go
+from mmgtune.diagnose.bench.beliefs import let_go, part_of
 from mmgtune.diagnose.bench.workbench import Point, make_workbench
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.signatures.intervals import estimates
@@ -20,11 +20,11 @@ from tests.diagnose.sensors import logged
 
 @pytest.fixture(scope="module")
 def sailed():
-    """Runs of a ship whose hull is not quite the profile's: each coefficient off by 4 % or so."""
+    """Runs of a ship that is not quite the profile's: each coefficient of the hull off by 4 % or so."""
     profile = load_profile("suzaku")
     rng = np.random.default_rng(5)
     names = let_go(Model(profile), profile.targets, ())
-    off = {name: profile.value(name) * (1.0 + 0.04 * rng.standard_normal()) for name in names}
+    off = {name: profile.value(name) * (1.0 + 0.04 * part_of(name) * rng.standard_normal()) for name in names}
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     made = []
     for trial, motion in zip(trials, simulate_trials(tuned(profile, off, {}, {}, "made"), trials), strict=True):
@@ -77,7 +77,23 @@ def test_nothing_that_is_tuned_or_held_has_leeway(name):
     assert not set(loose) & {*profile.targets, "hull.N_v"}
     assert all(profile.value(one) != 0.0 for one in loose)
     kinds = {one.partition(".")[0] for one in loose}
-    assert kinds <= {"hull", "particulars", "wake"}
+    assert kinds <= {"hull", "particulars", "wake", "propeller", "rudder"}
+
+
+@pytest.mark.parametrize(("name", "factor"), [("propeller.K_T0", 1.06), ("propeller.C_PY0", 0.92)])
+def test_curves_of_a_propeller_a_little_off_are_no_cause(name, factor):
+    """Thrust and side force some per cent off the profile's were a tow, and a thruster left on."""
+    profile = load_profile("suzaku")
+    ship = tuned(profile, {name: factor * profile.value(name)}, {}, {}, "made")
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20", "zigzag_10")]
+    rng = np.random.default_rng(5)
+    made = [logged(one, motion, rng) for one, motion in zip(trials, simulate_trials(ship, trials), strict=True)]
+    asked = ("rpm-scale", "thrust", "loading", "steady-force", "propeller-side-force", "resistance")
+    verdicts = {}
+    for leeway in (0.0, 0.05):
+        verdicts[leeway] = diagnose(profile, made, DiagnoseOptions(effects=asked, leeway=leeway)).verdict
+    assert verdicts[0.05] == "none"
+    assert verdicts[0.0] != "none"
 
 
 def test_no_leeway_is_nothing_beside_the_targets(suzaku):

