@@ -1,5 +1,6 @@
 """Choices as a program gives them: of their kind, and within what a machine can do."""
 
+import inspect
 import json
 import math
 from types import SimpleNamespace
@@ -22,6 +23,7 @@ from mmgtune.options import (
     SweepOptions,
     ValidateOptions,
 )
+from mmgtune.options.choice import choices
 from mmgtune.trial import load_trials
 
 
@@ -142,3 +144,15 @@ def test_numbers_stand_for_the_texts_that_mean_the_same(given, same):
 def test_a_zigzag_that_is_no_list_of_texts_is_told_what_one_is(given):
     with pytest.raises(OptionError, match="20/20"):
         SimulateOptions(zigzag=given)
+
+
+def test_options_say_what_they_are_where_one_asks():
+    """``help`` and Shift-Tab in a notebook showed ``*given: Any, **named: Any`` and not one meaning."""
+    shown = inspect.signature(FitOptions)
+    assert shown.parameters["starts"].default == 20
+    assert {one.kind for one in shown.parameters.values()} == {inspect.Parameter.KEYWORD_ONLY}
+    said = inspect.getdoc(FitOptions)
+    assert said.startswith("All choices of a fit")
+    for name, one in choices(FitOptions).items():
+        assert f"\n{name}: {one.help}" in said
+    assert "One of: cma-es, least-squares." in said

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import math
 import re
 import textwrap
@@ -87,6 +88,12 @@ class Choice:
         )
 
     @property
+    def meaning(self) -> str:
+        """Its help, the unit of a number and the words it may be, in a line."""
+        unit = f" [{self.unit}]" if self.unit else ""
+        return f"{self.help}{unit}{' One of: ' + ', '.join(self.values) + '.' if self.values else ''}"
+
+    @property
     def _limits(self) -> list[str]:
         ends = [("{:g} or more", self.least), ("above {:g}", self.above)]
         ends += [("{:g} or less", self.most), ("below {:g}", self.below)]
@@ -164,6 +171,23 @@ class _Named(type):
         if problems:
             raise OptionError(*problems)
         return super().__call__(**named)
+
+    @property
+    def __signature__(cls) -> inspect.Signature:
+        """What notebooks and ``help`` show: the options by name, with their defaults."""
+        known: Any = cls
+        named = inspect.Parameter.KEYWORD_ONLY
+        shown = [inspect.Parameter(one.name, named, default=one.default, annotation=one.type) for one in fields(known)]
+        return inspect.Signature(shown)
+
+    @property
+    def __doc__(cls) -> str:  # type: ignore[override]
+        """What the class says, and what each option means."""
+        said = inspect.cleandoc(vars(cls).get("__doc__") or "")
+        if "__dataclass_fields__" not in vars(cls):
+            return said
+        known: Any = cls
+        return "\n".join([said, "", *(f"{name}: {one.meaning}" for name, one in choices(known).items())])
 
 
 def _meant(name: str, names: Sequence[str], flags: Mapping[str, str]) -> dict[str, str]:
