@@ -91,6 +91,7 @@ EFFECT = ActuatorEffect(
     pivots={"noise": lambda _: 0.0},
     read_off={"noise": lambda visited: REACH * min(visited.rudder_noise, NOISIEST)},
     form={"begins": 0.5},
+    besides=("pushed",),
     variants=(("play",), ("pushed",)),
     sentence=_sentence,
 )

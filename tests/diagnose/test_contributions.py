@@ -207,7 +207,8 @@ def test_how_far_another_cause_is_off_without_one(monkeypatch, force, by, tag, m
 def test_a_ship_lighter_than_her_profile_is_told_beside_waves(tmp_path):
     case = pair(3041)
     assert case.name == "pair-loading-and-wave-drift-3041"
-    write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)
+    effects = case.effects | {"loading": {"draught": 0.85}}
+    write(simulate(case.ship, effects, case.seed, case.noise), tmp_path)
     asked = DiagnoseOptions(effects=("loading", "wave-drift", "wind", "current"))
     said = diagnose(load_profile("suzaku"), load_trials(tmp_path), asked)
     assert {cause.tag for cause in said.causes} == {"loading", "wave-drift"}

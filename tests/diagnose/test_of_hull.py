@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from mmgtune.diagnose import diagnose
-from mmgtune.diagnose.bench.of_hull import explained_by_hull, in_words
+from mmgtune.diagnose.bench.of_hull import PARTLY, explained_by_hull, in_words
 from mmgtune.effects import find_effect
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile
@@ -54,7 +54,7 @@ def test_a_loading_is_no_hull(tmp_path):
     result = diagnosed(tmp_path, {"loading": {"draught": 0.9}})
     assert [cause.tag for cause in result.causes] == ["loading"]
     (brought,) = [one for _, one in result.contributions]
-    assert 0.0 < brought.of_hull < 0.3
+    assert 0.0 < brought.of_hull < PARTLY
     assert not any("leeway" in note for note in result.warnings)
 
 

@@ -8,7 +8,7 @@ force of a formula.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 
 import numpy as np
@@ -37,6 +37,10 @@ OF_CURVES = {
 """What has less: the level of the forces of propeller and rudder, with the share of a hull's leeway.  Their curves are
 from tests of them alone, and errors that are only a little larger are what is looked for: of revolutions, of the
 rudder's angle."""
+
+ENDS = 2.0
+"""Standard deviations within which curves of propeller and rudder are looked for: long runs tell thrust so well that no
+belief would hold it, and a tow would be another propeller."""
 
 PATTERNS = (*OF_HULL, *OF_CURVES)
 
@@ -115,6 +119,17 @@ class Beliefs:
 def part_of(name: str) -> float:
     """The share of a hull's leeway that a coefficient has."""
     return next((part for pattern, part in OF_CURVES.items() if fnmatchcase(name, pattern)), 1.0)
+
+
+def with_ends(box: Box, loose: Sequence[str], share: float) -> Box:
+    """The box with ends where curves of propeller and rudder that are not from formulas have theirs."""
+    low, high = box.low.copy(), box.high.copy()
+    for k, name in enumerate(box.names):
+        part = part_of(name)
+        if name in loose and part < 1.0 and (box.scatter is None or np.isnan(box.scatter[k])):
+            half = ENDS * share * part * abs(float(box.pre[k]))
+            low[k], high[k] = max(low[k], box.pre[k] - half), min(high[k], box.pre[k] + half)
+    return replace(box, low=low, high=high)
 
 
 def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ from ...options import DiagnoseOptions
 from ...profile import ShipProfile, read_off, with_all_effects
 from ...trial import Coverage, Held, Trial, visited_by
 from ...trial.kinematics import motion_noise
-from .beliefs import FURTHEST, Beliefs, acting_kinds, forms, let_go
+from .beliefs import FURTHEST, Beliefs, acting_kinds, forms, let_go, with_ends
 from .noise import NoiseModel, by_channel, white
 from .runs import between, labels_of
 from .slopes import quick_slopes
@@ -398,6 +398,7 @@ def make_workbench(
     moving = anyway | {split_name(base_of(name))[0] for name in names}
     shapes = forms(model, moving) if options.leeway else {}
     box = make_box(model, tuple(dict.fromkeys((*targets, *loose, *names, *shapes))), options.a_r, FURTHEST)
+    box = with_ends(box, loose, options.leeway)
     problem = FitProblem.of(
         model=model,
         cases=cases,

@@ -441,7 +441,8 @@ def _from_bounds(
     bench: Workbench, point: Point, apart: Sequence[str], residual: FloatArray, columns: FloatArray
 ) -> FloatArray:
     """What free coefficients that ended at a bound change (n_rows, k), over the standard deviation of where they may be
-    within it: as far as they get until chi-squared has grown by two, or anywhere in their box.
+    within it: as far as they get until chi-squared has grown by two, or anywhere in their box; what has leeway is no
+    better known there than elsewhere.
 
     residual, columns  (n_rows,) and (n_rows, n_free) for a step of each name, initial states taken out
     """
@@ -450,8 +451,11 @@ def _from_bounds(
         return columns[:, :0]
     kept = columns[:, at_bound]
     steep = np.abs(kept.T @ residual)
-    box = np.array([BOXED / unit_of(bench, point.names[k]) for k in at_bound])
-    return np.asarray(kept * np.minimum(box, 1.0 / np.maximum(steep, 1e-300)))
+    names, leeway = [point.names[k] for k in at_bound], bench.believed.leeway
+    box = np.array([BOXED / unit_of(bench, name) for name in names])
+    within = np.minimum(box, 1.0 / np.maximum(steep, 1e-300))
+    known = np.array([leeway.get(name, np.nan) / unit_of(bench, name) for name in names])
+    return np.asarray(kept * np.where(np.isnan(known), within, known))
 
 
 def unit_of(bench: Workbench, name: str) -> float:
