@@ -80,6 +80,7 @@ def test_nothing_that_is_tuned_or_held_has_leeway(name):
     assert kinds <= {"hull", "particulars", "wake", "propeller", "rudder"}
 
 
+@pytest.mark.daily("K_T0")
 @pytest.mark.parametrize(("name", "factor"), [("propeller.K_T0", 1.06), ("propeller.C_PY0", 0.92)])
 def test_curves_of_a_propeller_a_little_off_are_no_cause(name, factor):
     """Thrust and side force some per cent off the profile's were a tow, and a thruster left on."""

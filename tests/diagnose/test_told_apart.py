@@ -60,6 +60,7 @@ def test_what_lies_far_from_where_a_search_begins_is_found(tag, hidden, rivals, 
     assert found["ci95"][0] < truth < found["ci95"][1]
 
 
+@pytest.mark.long
 def test_a_blade_that_begins_at_one_end_of_its_play_is_told(tmp_path):
     """From its middle it was a wind, another one in each run."""
     hidden = {"play": 3.0 * DEG, "begins": -1.0}
