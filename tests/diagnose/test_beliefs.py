@@ -89,7 +89,7 @@ def test_curves_of_a_propeller_a_little_off_are_no_cause(name, factor):
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20", "zigzag_10")]
     rng = np.random.default_rng(5)
     made = [logged(one, motion, rng) for one, motion in zip(trials, simulate_trials(ship, trials), strict=True)]
-    asked = ("rpm-scale", "thrust", "loading", "steady-force", "propeller-side-force", "resistance")
+    asked = ("thrust", "steady-force", "propeller-side-force")
     verdicts = {}
     for leeway in (0.0, 0.05):
         verdicts[leeway] = diagnose(profile, made, DiagnoseOptions(effects=asked, leeway=leeway)).verdict

@@ -34,7 +34,7 @@ def test_effects_are_those_looked_for(suzaku):
 
 def test_what_has_leeway_is_said(suzaku):
     shown = lines_of(suzaku.profile, load_trials("suzaku"))
-    assert shown["leeway"].startswith("5 % of their values: hull.X_vv, ")
+    assert shown["leeway"].startswith("up to 5 % of their values: hull.X_vv, ")
     assert "particulars.m_y_" in shown["leeway"]
     assert "hull.R_0" not in shown["leeway"]
     lines = plan_diagnosis(suzaku.profile, load_trials("suzaku"), DiagnoseOptions(leeway=0.0)).lines
