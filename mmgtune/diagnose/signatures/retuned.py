@@ -38,9 +38,6 @@ thrust or resistance a little off does the same."""
 STEERED_BY = ("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r")
 """What has leeway that trials tell best of a hull: its linear derivatives in sway and yaw."""
 
-DRIVEN_BY = ("propeller.K_T0", "propeller.k_0")
-"""What has leeway that trials tell of a propeller: the level of its thrust."""
-
 IMPLAUSIBLE = 0.25
 """Share of thrust, or of the flow to the propeller, by which one of their coefficients may have moved it: beyond that
 the balance with resistance is where no ship's is, and none of its numbers is told as hers."""
@@ -146,7 +143,7 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     """Targets of the ship herself at a point, those most surely far from their pre-determined values first, and values
     of mass, inertia, the hull and the forms of effects that act anyway, that the trials contradict."""
     known = [name for name in point.names if name in bench.believed.leeway]
-    loose = [name for name in known if name.startswith(WEIGHED) or name in (*STEERED_BY, *DRIVEN_BY)]
+    loose = [name for name in known if name.startswith(WEIGHED) or name in STEERED_BY]
     loose += [name for name in bench.believed.of_acting if name in point.names]
     names = [name for name in point.names if name in bench.targets and not effect_tag(name)] + loose
     if not names:
@@ -183,7 +180,6 @@ def weighed(moved: Sequence[Retuned], of_hull: bool = True, beside: bool = False
     forms = [one for one in far if effect_tag(one.name) and of_hull]
     heavy = [one for one in far if one.name.startswith(WEIGHED)]
     hull = [one for one in far if one.name in STEERED_BY and of_hull]
-    drive = [one for one in far if one.name in DRIVEN_BY and of_hull]
     told = []
     if heavy:
         they = "It is no target" if len(heavy) == 1 else "They are no targets"
@@ -199,14 +195,9 @@ def weighed(moved: Sequence[Retuned], of_hull: bool = True, beside: bool = False
             f"They are fitted best with {listed([one.roughly for one in hull])}, though no target: her hull may steer "
             f"otherwise than that of the profile, or {takes} up what other coefficients are off by."
         )
-    if drive:
-        told.append(
-            f"They are fitted best with {listed([one.roughly for one in drive])}, though no target: her propeller may "
-            "push otherwise than that of the profile, or it takes up what other coefficients are off by."
-        )
     if heavy and hull and all((one.change or 0.0) > 0.0 for one in (*heavy, *hull)):
         told.append("All of these are larger in shallow water.")
-    if (hull or drive) and not heavy:
+    if hull and not heavy:
         told[0] = told[0].replace("They are", "The trials are", 1)
     told += [_of_form(tag, [one for one in forms if effect_tag(one.name) == tag]) for tag in _tags(forms)]
     return " ".join(told)
