@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..units import DEG
 from .particulars import Particulars
 
 
@@ -79,10 +80,10 @@ RULES: dict[tuple[str, str], tuple[str, Callable[[Complete], float]]] = {
     ("rudder", "A_R"): ("DNV minimum, L d / 100 (1 + 25 (B/L)^2)", _rudder_area),
     ("rudder", "H_R"): ("aspect ratio 1.8, at most 0.85 d", _span),
     ("rudder", "x_R_"): ("at the aft perpendicular", lambda _: -0.5),
-    ("steering_gear", "max_angle"): ("usual", lambda _: 0.6108652381980153),
+    ("steering_gear", "max_angle"): ("usual", lambda _: 35.0 * DEG),
     ("steering_gear", "rate"): (
         "SOLAS II-1/29: 35 deg to 30 deg on the other side in 28 s",
-        lambda _: 0.04049163864626845,
+        lambda _: 2.32 * DEG,
     ),
 }
 """Rules in the order in which they need each other."""

@@ -153,8 +153,8 @@ class _Estimate:
             name=f"{self.ship.name}, {self.options.form.upper()} from main dimensions",
             source=self.ship.source or "main dimensions, and published formulas named with each number",
             sections=sections,
-            steering_gear=SteeringGear(*(self.of("steering_gear", name) for name in ("max_angle", "rate"))),
-            approach=Approach(self.U, self.ship.get("approach", "n") or rounded(self.propulsion.n)),
+            steering_gear=self.steering_gear(),
+            approach=self.approach(),
             targets=tuple(name for name in SCATTER if name in scattered and name not in LEFT_ALONE),
             provenance={
                 "made_by": "mmgtune profile new",
@@ -198,10 +198,29 @@ class _Estimate:
         found = {}
         for name in names:
             rule = self.of.rule(section, name)
-            said = self.ship.sources.get(section, "") or self.ship.source or "given"
+            said = self.said_of(section)
             value = self.of(section, name)
             found[name] = Coefficient(rounded(value), rule, True) if rule else Coefficient(value, said)
         return found
+
+    def steering_gear(self) -> SteeringGear:
+        """Limits of the rudder."""
+        names = ("max_angle", "rate")
+        rules = {name: rule for name in names if (rule := self.of.rule("steering_gear", name))}
+        source = "; ".join(f"{name}: {rule} (assumption)" for name, rule in rules.items())
+        max_angle, rate = (self.of("steering_gear", name) for name in names)
+        return SteeringGear(max_angle, rate, source or self.said_of("steering_gear"))
+
+    def approach(self) -> Approach:
+        """Speed and revolutions that manoeuvres begin with."""
+        given, n = self.said_of("approach"), self.ship.get("approach", "n")
+        if n is not None:
+            return Approach(self.U, n, given)
+        return Approach(self.U, rounded(self.propulsion.n), f"speed: {given}; n: thrust is resistance at that speed")
+
+    def said_of(self, section: str) -> str:
+        """Where the particulars say that given values of a section come from."""
+        return self.ship.sources.get(section, "") or self.ship.source or "given"
 
     def assumed(self, kind: str, values: Mapping[str, float], source: str) -> dict[str, Coefficient]:
         """Values that hold for ships at large."""

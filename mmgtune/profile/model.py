@@ -78,10 +78,14 @@ class Actuator:
 
 @dataclass(frozen=True)
 class SteeringGear:
-    """Limits of every rudder that has no actuator of its own: max_angle [rad] to either side, rate [rad/s]."""
+    """Limits of every rudder that has no actuator of its own: max_angle [rad] to either side, rate [rad/s].
+
+    source  where they come from, "" where the profile does not say
+    """
 
     max_angle: float
     rate: float
+    source: str = ""
 
     @property
     def actuator(self) -> Actuator:
@@ -91,10 +95,14 @@ class SteeringGear:
 
 @dataclass(frozen=True)
 class Approach:
-    """The condition standard manoeuvres start from: speed [m/s], propeller revolutions n [1/s]."""
+    """The condition standard manoeuvres start from: speed [m/s], propeller revolutions n [1/s].
+
+    source  where they come from, "" where the profile does not say
+    """
 
     speed: float
     n: float
+    source: str = ""
 
 
 @dataclass(frozen=True)

@@ -144,8 +144,8 @@ class _Reader(TomlReader):
             name=self.word("ship", ship, "name"),
             source=self.word("ship", ship, "source"),
             sections=sections,
-            steering_gear=SteeringGear(**gear) if gear else None,
-            approach=Approach(**approach) if approach else None,
+            steering_gear=SteeringGear(**gear, source=self.source_of("steering_gear")) if gear else None,
+            approach=Approach(**approach, source=self.source_of("approach")) if approach else None,
             targets=self.targets(sections) if complete else (),
             limits=self.limits(),
             provenance=self.provenance(),
@@ -391,6 +391,10 @@ class _Reader(TomlReader):
             if coefficient is not None and not isinstance(coefficient.value, tuple):
                 values[key] = coefficient.value
         return values if len(values) == len(fields) else None
+
+    def source_of(self, section: str) -> str:
+        """Where a section of plain numbers comes from, "" where it does not say."""
+        return self.text_of(section, self.data[section], "source")
 
     def targets(self, sections: dict[str, Section]) -> tuple[str, ...]:
         table = self.data.get("tuning", {})

@@ -8,7 +8,7 @@ from typing import Any
 from ..components import Field
 from ..inputs import INPUTS
 from ..metrics import METRICS
-from .model import Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
+from .model import Actuator, Coefficient, Section, ShipProfile
 
 POWERS = {"m": 1.0, "m^2": 2.0, "s": 0.5, "m/s": 0.5, "1/s": -0.5, "rad/s": -0.5, "1/s^2": -1.0, "N": 3.0}
 """Power of the scale that a number of a unit grows with; a unit that is not here has no length or time in it."""
@@ -51,8 +51,9 @@ def froude_scaled(profile: ShipProfile, scale: float, *, id: str, name: str) -> 
         id=id,
         name=name,
         sections={kind: section(old) for kind, old in profile.sections.items()},
-        steering_gear=gear and SteeringGear(gear.max_angle, factor("rad/s", scale) * gear.rate),
-        approach=approach and Approach(factor("m/s", scale) * approach.speed, factor("1/s", scale) * approach.n),
+        steering_gear=gear and replace(gear, rate=factor("rad/s", scale) * gear.rate),
+        approach=approach
+        and replace(approach, speed=factor("m/s", scale) * approach.speed, n=factor("1/s", scale) * approach.n),
         limits={metric: factor(METRICS[metric].unit, scale) * most for metric, most in profile.limits.items()},
         actuators={input: actuator(input, old) for input, old in profile.actuators.items()},
         provenance={},

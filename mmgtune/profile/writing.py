@@ -49,6 +49,8 @@ def profile_text(profile: ShipProfile) -> str:
         _write_section(document, section, before.sections.get(kind), _derived(profile, kind))
     for name, fields in (("steering_gear", STEERING_GEAR), ("approach", APPROACH)):
         now, was = getattr(profile, name), getattr(before, name)
+        if now and now.source != (was.source if was else ""):
+            _table(document, name)["source"] = now.source
         numbers = {key: getattr(now, key) for key in fields} if now else {}
         _write_numbers(document, name, numbers, {key: getattr(was, key) for key in fields} if was else {}, fields)
     for name in dict.fromkeys((*before.actuators, *profile.actuators)):

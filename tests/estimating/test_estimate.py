@@ -52,6 +52,17 @@ def test_every_number_is_explained_and_reads_back(name, form, derivatives):
     assert ship.provenance["options"]["form"] == form
 
 
+def test_gear_and_approach_say_what_they_were_taken_from():
+    ship = estimate(parse_particulars(SMALL))
+    assert "max_angle: usual (assumption); rate: SOLAS" in ship.steering_gear.source
+    assert ship.approach.source == "speed: given; n: thrust is resistance at that speed"
+    assert 'rate = "2.32 deg/s"' in ship.text
+    given = SMALL + 'n = "160 rpm"\n[steering_gear]\nsource = "maker"\nmax_angle = "45 deg"\nrate = "3 deg/s"\n'
+    ship = estimate(parse_particulars(given))
+    assert (ship.steering_gear.source, ship.approach.source) == ("maker", "given")
+    assert parse_profile(ship.text) == ship
+
+
 def test_the_bundled_profile_is_what_the_command_makes():
     made = estimate(read_particulars("suzaku"), EstimateOptions(form="fam"))
     assert (folder("ship_profiles") / "suzaku_fam.toml").read_text() == made.text
