@@ -236,9 +236,18 @@ class Given:
         else:
             c.show(RENDERERS[self.format](report), end="", commands=self.format == "github")
         self._write(report)
+        if self.out is not None:
+            from ..checking import write_check
+            from ..report import render
+
+            write_check(report, self.out, c.command_line(), overwrite=True)
+            render(self.out)
 
     def elsewhere(self, report: CheckReport) -> None:
-        """A check that could not run: the problem itself goes to stderr, a machine's format to stdout."""
+        """A check that could not run: the problem itself goes to stderr, a machine's format to stdout.
+
+        There are no results to put into a folder: the next try finds it as it was.
+        """
         from ..checking.renderers import RENDERERS
 
         if self.format not in (None, "text"):
@@ -262,12 +271,6 @@ class Given:
         from ..checking.renderers import RENDERERS
         from ..files import cannot_write, write_text
 
-        if self.out is not None:
-            from ..checking import write_check
-            from ..report import render
-
-            write_check(report, self.out, c.command_line(), overwrite=True)
-            render(self.out)
         if self.junit is not None:
             write_text(self.junit, RENDERERS["junit"](report))
         if self.summary is not None:

@@ -101,7 +101,8 @@ def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measu
     """Bring r, u and v to the trial format's signs and axes, in place; what was found, in sentences.
 
     columns   x, y, psi, r and, where measured, u and v, (n_samples,)
-    measured  quantities that come from columns of the log, with signs it may not have stated
+    measured  quantities that come from columns of the log, with signs it may not have stated as sentences of NMEA
+              0183 do
 
     Raises LogError with every question the motion does not answer.
     """
@@ -117,7 +118,8 @@ def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measu
         said.append(f"{' and '.join(assumed)}, as the map says nothing else")
     said += _yaw(t, columns, log_map, measured, where, problems)
     refusal = NoYawRate if problems else LogError
-    if {"u", "v"} <= measured:
+    of_table = all(name in log_map.sources and log_map.sources[name].column for name in ("u", "v"))
+    if {"u", "v"} <= measured and of_table:
         said += _axes(t, columns, log_map, where, problems)
     if problems:
         raise refusal(*problems)

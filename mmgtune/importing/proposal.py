@@ -18,6 +18,7 @@ from ..phrases import counted
 from .doubts import shifted_lever
 from .formats.forms import form_of
 from .formats.kept import opened_once
+from .formats.sentences import chosen, stand_ins
 from .importer import Imported, import_logs, paths_of
 from .maps.mapping import ALL, ASKS, PARTS, LogMap
 from .maps.reading_map import parse_map
@@ -290,17 +291,20 @@ def _of_sentences(paths: tuple[Path, ...]) -> Proposal:
         with path.open("rb") as file:
             start = file.read(1 << 20)
         kinds.update(one.decode() for one in re.findall(rb"[$!][A-Z]{2}([A-Z]{3}),", start))
+    taken = chosen(kinds)
     said = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(20))
     asked, asks = [], []
-    for name, wanted, example in (("n", "RPM", "1.5 rps"), ("delta", "RSA", "0 deg")):
-        if wanted not in kinds:
+    holders = (("n", "RPM", "1.5 rps", "RPM" in kinds), ("delta", "RSA", "0 deg", "rudder angle" in taken))
+    for name, wanted, example, there in holders:
+        if not there:
             asks.append(f"columns.{name}.value")
             asked.append(
                 f'{name} = {{ value = "{ASKS} \\"{example}\\": no {wanted} sentence says it; which constant?" }}'
             )
     columns = "\n[columns]\n" + "\n".join(asked) + "\n" if asked else ""
     text = _NMEA.format(said=f"# Seen in their beginnings: {said}.", columns=columns)
-    proposal = Proposal(text, paths, {}, tuple(asks), (f"sentences seen: {said}",), (), (), None, None)
+    notes = (f"sentences seen: {said}", *stand_ins(taken))
+    proposal = Proposal(text, paths, {}, tuple(asks), notes, (), (), None, None)
     if asks:
         return proposal
     found, problems = _imported(proposal)

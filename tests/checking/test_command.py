@@ -225,6 +225,14 @@ def test_the_record_is_no_baseline_and_replaces_nothing(ready):
     assert (ready / "check.json").read_bytes() == before
 
 
+def test_a_check_that_could_not_run_leaves_its_folder_to_the_next(ready):
+    """After a name misspelt the command put right was refused: the output existed already."""
+    misspelt = run("check", "suzaku", "trials", "--baseline", "chek.json", "--out", "new", cwd=ready)
+    assert misspelt.code == 2
+    assert not (ready / "new").exists()
+    assert check(ready, "--out", "new").code == 0
+
+
 @pytest.mark.parametrize(
     ("asked", "said"),
     [

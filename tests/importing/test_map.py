@@ -55,7 +55,7 @@ def test_everything_wrong_at_once():
         ('psi = { column = "heading", unit = "deg" }', 'psi = { value = "3 deg" }', "is given as a constant"),
         ("[columns]", '[log]\nformat = "parquet"\nskip = 3\n[columns]', "'log.skip' has no meaning for Parquet"),
         ("[columns]", '[log]\nformat = "nmea"\n[columns]', "'columns.psi.column' has no meaning for NMEA 0183"),
-        ("[columns]", '[log]\nformat = "nmea"\n[columns]', "no sentence holds 'u'"),
+        ("[columns]", '[log]\nformat = "nmea"\n[columns]', "no sentence holds 'x'"),
         ('y = { column = "east", unit = "m" }', "", "no columns are named for the position"),
         ("[columns]", 'shifted = "earth-axes"\n[columns]', "but not from where"),
         ("[columns]", 'shifted = "ship-axes"\n[columns]', "one of: 'earth-axes'"),

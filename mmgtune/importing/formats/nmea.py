@@ -18,30 +18,31 @@ import numpy as np
 
 from ...errors import LogError, Problem
 from ...trial.headings import unwrapped
-from ...units import DEG, KNOT, factors
 from ..cells.periods import DAY
 from ..clock import put_right
 from ..maps.mapping import LogMap, TimeSource
 from ..maps.quantities import AGAINST, QUANTITIES, meaning, quantity_of
 from ..record import Record, Series
+from .sentences import (
+    ALONE,
+    HOLDERS,
+    KINDS,
+    ONE_SENSOR,
+    POSITIONS,
+    chosen,
+    date,
+    of_day,
+    place,
+    stand_ins,
+    values,
+    velocity,
+)
 from .table import MOST_ROWS
 
-SENTENCES = {
-    "GGA": "position", "RMC": "position", "GLL": "position", "VTG": "velocity", "HDT": "heading", "THS": "heading",
-    "ROT": "yaw rate", "RSA": "rudder", "RPM": "revolutions", "MWV": "wind", "MWD": "wind", "ZDA": "date",
-}  # fmt: skip
-POSITIONS = ("GGA", "RMC", "GLL")
-OF_ONE_SENSOR = (*POSITIONS, "VTG", "HDT", "THS", "ROT", "MWV", "MWD")
-"""Sentences that two sensors may send in turn, each of its own place or zero."""
 GYROCOMPASS = b"HE"
 OFTEN = 0.05
 """Sentences of others over those of one talker from which they are no damage to its name."""
-_SPEED = {letter: factors("m/s")[unit] for letter, unit in (("K", "km/h"), ("M", "m/s"), ("N", "kn"))} | {"S": 0.44704}
-"""Letters of units of speed; S is for statute miles per hour."""
-_PER_MINUTE = factors("rad/s")["deg/min"]
-_RPM = factors("1/s")["rpm"]
 _LINE = re.compile(rb"[$!]([A-Z]{2}|P[A-Z]*)([A-Z]{3}),([^*\r\n]*+)(?:\*([0-9A-Fa-f]{2}))?\s*$")
-_NUMBER = re.compile(r"[-+]?(\d{1,12}\.?\d{0,30}|\.\d{1,30})")
 LINE = 4096
 """Bytes of a line that are looked at; sentences have 82 at most."""
 WAITING = 10_000
@@ -80,8 +81,10 @@ class _Channel:
 class _Parser:
     """One pass over the lines of a log."""
 
-    def __init__(self, primary: str, with_vtg: bool, talkers: Mapping[str, bytes]):
-        self.primary, self.with_vtg, self.talkers = primary, with_vtg, talkers
+    def __init__(self, taken: Mapping[str, tuple[str, ...]], talkers: Mapping[str, bytes]):
+        self.taken, self.talkers = taken, talkers
+        self.primary = taken["position"][0]
+        self.heard = {*ALONE, *(kind for kinds in taken.values() for kind in kinds)}
         self.of_others: Counter[str] = Counter()
         self.channels: dict[str, _Channel] = {}
         self.waiting: dict[str, list[float]] = {}
@@ -103,7 +106,7 @@ class _Parser:
         if match is None:
             return
         kind = match.group(2).decode()
-        if kind not in SENTENCES:
+        if kind not in KINDS:
             return
         if match.group(1) != self.talkers.get(kind, match.group(1)):
             self.of_others[f"{match.group(1).decode()}{kind}"] += 1
@@ -125,49 +128,38 @@ class _Parser:
         """Take one sentence.  Raises ValueError, IndexError or KeyError where it is not what the standard says."""
         if kind in POSITIONS:
             self.position(kind, f)
-        elif kind == "VTG" and f[0] and f[4]:
-            self.velocity(_number(f[4]) * KNOT, _number(f[0]) * DEG)
-        elif (kind == "HDT" and f[0]) or (kind == "THS" and f[0] and f[1] != "V"):
-            self.wait(psi=_number(f[0]) * DEG)
-        elif kind == "ROT" and f[0] and f[1] == "A":
-            self.wait(r=_number(f[0]) * _PER_MINUTE)
-        elif kind == "RSA":
-            self.rudder(f)
-        elif kind == "RPM" and f[2] and f[4] == "A":
-            if f[0] not in ("S", "E") or not re.fullmatch(r"\d{0,2}", f[1]):
-                raise ValueError
-            self.wait(**{f"n {f[0]}{f[1]}": _number(f[2]) * _RPM})
-        elif kind == "MWV" and f[0] and f[2] and f[4] == "A" and f[1] == "R":
-            self.wait(wind_dir_app=_number(f[0]) * DEG, wind_speed_app=_number(f[2]) * _SPEED[f[3]])
-        elif kind == "MWD" and f[0] and (f[6] or f[4]):
-            self.wait(wind_dir=_number(f[0]) * DEG, wind_speed=_number(f[6]) if f[6] else _number(f[4]) * KNOT)
         elif kind == "ZDA" and not self.date and f[1]:
-            self.date = _date(f[3], f[2], f[1])
+            self.date = date(f[3], f[2], f[1])
+        elif kind in self.heard:
+            self.wait(values(kind, f))
 
     def position(self, kind: str, f: list[str]) -> None:
         if kind == "GGA":
             time, at, good = f[0], 1, f[5] not in ("", "0")
+        elif kind == "GNS":
+            # A letter for each system of satellites, N where it gives no position.
+            time, at, good = f[0], 1, f[5].strip("N") != ""
         elif kind == "RMC":
             time, at, good = f[0], 2, f[1] == "A"
         else:
             # Receivers of before 1992 write no status.
             time, at, good = f[4], 0, len(f) < 6 or f[5] == "A"
         if kind == self.primary and time:
-            self.begin(_of_day(time))
+            self.begin(of_day(time))
             self.no_fix += not good
-            place = (math.nan, math.nan)
+            where = (math.nan, math.nan)
             try:
                 if good:
-                    place = (_degrees(f[at], f[at + 1], "NS", 90.0), _degrees(f[at + 2], f[at + 3], "EW", 180.0))
+                    where = place(f, at)
             finally:
                 # Its time counts even where the place cannot be read: other sentences take theirs from it.
-                self.add("latitude", self.epoch, place[0])
-                self.add("longitude", self.epoch, place[1])
+                self.add("latitude", self.epoch, where[0])
+                self.add("longitude", self.epoch, where[1])
         if kind == "RMC":
             if not self.date and len(f) > 8 and len(f[8]) == 6:
-                self.date = _date(f"20{f[8][4:]}", f[8][2:4], f[8][:2])
-            if not self.with_vtg and f[1] == "A" and f[6] and f[7]:
-                self.velocity(_number(f[6]) * KNOT, _number(f[7]) * DEG)
+                self.date = date(f"20{f[8][4:]}", f[8][2:4], f[8][:2])
+            if kind in self.taken.get("velocity", ()) and f[1] == "A":
+                self.wait(velocity(f[6], f[7]))
 
     def begin(self, of_day: float) -> None:
         """A new epoch: what was waiting belongs to the one before."""
@@ -187,25 +179,14 @@ class _Parser:
             if 0.0 < now - self.epoch < (10.0 * self.lasting or math.inf):
                 self.lasting = now - self.epoch
             # Over a hole, or where the clock was set, an epoch lasts as long as the one before.
-            for name, values in self.waiting.items():
-                for i, value in enumerate(values):
-                    self.add(name, self.epoch + self.lasting * i / len(values), value)
+            for name, waited in self.waiting.items():
+                for i, value in enumerate(waited):
+                    self.add(name, self.epoch + self.lasting * i / len(waited), value)
         self.waiting = {}
 
-    def velocity(self, speed: float, course: float) -> None:
-        self.wait(north=speed * math.cos(course), east=speed * math.sin(course))
-
-    def rudder(self, f: list[str]) -> None:
-        """The single or starboard sensor, and the port one where there is one."""
-        angles = [_number(f[k]) * DEG for k in (0, 2) if len(f) > k + 1 and f[k] and f[k + 1] == "A"]
-        if angles:
-            self.wait(delta=sum(angles) / len(angles))
-        if len(angles) == 2:
-            self.wait(delta_stbd=angles[0], delta_port=angles[1])
-
-    def wait(self, **values: float) -> None:
+    def wait(self, found: Mapping[str, float]) -> None:
         """Keep values until the time of the next position is known; all of a sentence were read by then."""
-        for name, value in values.items():
+        for name, value in found.items():
             waiting = self.waiting.setdefault(name, [])
             if len(waiting) >= WAITING:
                 raise ValueError
@@ -226,14 +207,14 @@ def read_nmea(path: Path, log_map: LogMap) -> list[Record]:
     Raises LogError naming the sentences that are missing.
     """
     kinds = _kinds(path)
-    primary = next((kind for kind in POSITIONS if kinds[kind]), None)
-    needed = [
-        ("a position", "GGA, RMC or GLL", primary is not None),
-        ("a heading", "HDT or THS", bool(kinds["HDT"] or kinds["THS"])),
-    ]
-    for name, words, kind in (("delta", "the rudder angle", "RSA"), ("n", "the propeller's revolutions", "RPM")):
-        constant = name in log_map.sources and log_map.sources[name].value is not None
-        needed.append((words, kind, bool(kinds[kind]) or constant))
+    taken = chosen(kinds)
+    constant = {name for name in ("delta", "n") if name in log_map.sources and log_map.sources[name].value is not None}
+    needed = (
+        ("a position", "GGA, GNS, RMC or GLL", "position" in taken),
+        ("a heading", "HDT or THS", "heading" in taken),
+        ("the rudder angle", "RSA", "rudder angle" in taken or "delta" in constant),
+        ("the propeller's revolutions", "RPM", bool(kinds["RPM"]) or "n" in constant),
+    )
     problems = [
         Problem(
             f"the log has no sentence with {what}",
@@ -246,7 +227,7 @@ def read_nmea(path: Path, log_map: LogMap) -> list[Record]:
     ]
     if problems:
         raise LogError(*problems)
-    parser = _Parser(primary or "GGA", bool(kinds["VTG"]), _talkers(path))
+    parser = _Parser(taken, _talkers(path))
     with path.open("rb") as file:
         number = 1
         while raw := file.readline(LINE):
@@ -268,7 +249,7 @@ def _kinds(path: Path) -> Counter[str]:
         while block := file.read(1 << 22):
             block += file.readline(LINE)
             found.update(kind.decode() for kind in pattern.findall(block))
-    return Counter({kind: count for kind, count in found.items() if kind in SENTENCES})
+    return Counter({kind: count for kind, count in found.items() if kind in KINDS})
 
 
 def _talkers(path: Path) -> dict[str, bytes]:
@@ -276,7 +257,7 @@ def _talkers(path: Path) -> dict[str, bytes]:
 
     A receiver that goes over to more satellites changes its name once, and stays the same.
     """
-    pattern = re.compile(rb"[$!]([A-Z]{2})(" + "|".join(OF_ONE_SENSOR).encode() + rb"),")
+    pattern = re.compile(rb"[$!]([A-Z]{2})(" + "|".join(sorted(ONE_SENSOR)).encode() + rb"),")
     last: dict[bytes, bytes] = {}
     counts: dict[bytes, Counter[bytes]] = {}
     changes: Counter[bytes] = Counter()
@@ -296,6 +277,18 @@ def _talkers(path: Path) -> dict[str, bytes]:
     return found
 
 
+def _left_out(parser: _Parser) -> list[str]:
+    """Sentences that hold what others are believed for."""
+    notes = []
+    for name, kinds in parser.taken.items():
+        others = [kind for several in HOLDERS[name] for kind in several if kind not in (*parser.heard, *POSITIONS)]
+        counted = ", ".join(f"{parser.counts[kind]} {kind}" for kind in others if parser.counts[kind])
+        if counted:
+            believed = " and ".join(kind for kind in kinds if parser.counts[kind])
+            notes.append(f"{counted} left out: the {name} is that of {believed}")
+    return notes
+
+
 def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
     """What was parsed in the program's units, in parts where the clock was set back."""
     start = parser.channels["latitude"].t[0]
@@ -303,6 +296,7 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
         f"NMEA 0183: {', '.join(f'{count} {kind}' for kind, count in parser.counts.most_common())}; "
         f"time and position from {parser.primary}" + (f", {parser.date}" if parser.date else "")
     ]
+    notes += [*stand_ins(parser.taken), *_left_out(parser)]
     if parser.of_others:
         heard = ", ".join(sorted(f"{talker.decode()}{kind}" for kind, talker in parser.talkers.items()))
         others = ", ".join(f"{count} {name}" for name, count in parser.of_others.most_common())
@@ -332,61 +326,28 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
     for name, channel in channels.items():
         if name.startswith("n "):
             continue
-        t, values = np.array(channel.t) - start, np.array(channel.values)
+        t, numbers = np.array(channel.t) - start, np.array(channel.values)
         if len(t) < 2:
             continue
         line = put_right(t, TimeSource(recover="never"), lambda row: f"{path}, sample {row + 1}")
         if name == "latitude":
             notes += line.notes
-        values = values[line.keep]
+        numbers = numbers[line.keep]
         source = log_map.sources.get(name)
         if source is not None and source.value is None:
-            values = values * source.scale * (-1.0 if source.positive in AGAINST else 1.0) + source.offset
+            numbers = numbers * source.scale * (-1.0 if source.positive in AGAINST else 1.0) + source.offset
         quantity = quantity_of(name)
-        beyond = (quantity or QUANTITIES["sog"]).beyond(values)  # others are velocities
+        beyond = (quantity or QUANTITIES["sog"]).beyond(numbers)  # others are velocities
         if beyond.any():
             notes.append(f"{beyond.sum()} values of {meaning(name) or 'velocity'} are impossible; taken as gaps")
-            values = np.where(beyond, np.nan, values)
+            numbers = np.where(beyond, np.nan, numbers)
         if quantity is not None and quantity.angle:
-            values = unwrapped(values, 360.0 if quantity.unit == "deg" else 2.0 * np.pi)
+            numbers = unwrapped(numbers, 360.0 if quantity.unit == "deg" else 2.0 * np.pi)
         t = t[line.keep]
         bounds = [0, *line.parts, len(t)]
-        pieces[name] = [Series(t[first:last], values[first:last]) for first, last in pairwise(bounds)]
+        pieces[name] = [Series(t[first:last], numbers[first:last]) for first, last in pairwise(bounds)]
     parts = len(pieces.get("latitude", [0]))
     if any(len(found) != parts for found in pieces.values()):
         why = "the times of the positions fall back and go on from there, and not all sentences are on both sides"
         raise LogError(Problem("the clock was set back within the log", str(path), why, "cut the log there"))
     return [Record(path, {name: found[k] for name, found in pieces.items()}, notes=list(notes)) for k in range(parts)]
-
-
-def _number(text: str) -> float:
-    """A plain number.  Raises ValueError where it is none: Python reads more than sentences may hold."""
-    if not _NUMBER.fullmatch(text):
-        raise ValueError
-    return float(text)
-
-
-def _of_day(time: str) -> float:
-    """ "123519.50" as seconds of the day.  Raises ValueError."""
-    h, m, s = _number(time[:2]), _number(time[2:4]), _number(time[4:])
-    if not (0.0 <= h < 24.0 and 0.0 <= m < 60.0 and 0.0 <= s < 61.0):
-        raise ValueError
-    return 3600.0 * h + 60.0 * m + s
-
-
-def _date(year: str, month: str, day: str) -> str:
-    """ "2024-05-01".  Raises ValueError where these are no numbers."""
-    if not re.fullmatch(r"\d{4}-\d{1,2}-\d{1,2}", found := f"{year}-{month}-{day}"):
-        raise ValueError
-    return found
-
-
-def _degrees(text: str, side: str, sides: str, most: float) -> float:
-    """ "3512.345", "S" as -35.20575.  Raises ValueError where it is no place on earth."""
-    _number(text)
-    point = text.index(".") if "." in text else len(text)
-    degrees, minutes = float(text[: max(0, point - 2)] or 0), float(text[max(0, point - 2) :])
-    found = degrees + minutes / 60.0
-    if side not in sides or not side or minutes > 60.0 or not 0.0 <= found <= most:
-        raise ValueError
-    return -found if side == sides[1] else found

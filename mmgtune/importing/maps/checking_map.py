@@ -12,7 +12,8 @@ from .mapping import TABLES, LogMap
 from .quantities import PAIRS, meaning
 
 IN_SENTENCES = (
-    "psi", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app",
+    "psi", "u", "v", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app",
+    "wind_dir_app", "depth",
 )  # fmt: skip
 """What a map may give a sign, a factor and an offset to where the log is NMEA 0183."""
 
