@@ -1032,3 +1032,14 @@ def test_a_speed_along_the_track_is_not_off_by_what_drift_takes_of_it(tmp_path):
     guess = propose_map(write_csv(tmp_path / "log.csv", columns)).guesses["sog"]
     assert guess.confidence == "sure"
     assert "off by a factor" not in " ".join(guess.evidence)
+
+
+def test_a_magnetic_heading_is_told_and_a_true_one_is_taken_before_it(tmp_path):
+    columns = logged(turn())
+    true = columns.pop("heading")
+    magnetic = {"Heading Mag": (true + 7.5) % 360.0}
+    alone = propose_map([write_csv(tmp_path / "alone.csv", columns | magnetic)])
+    assert [note for note in alone.notes if "'Heading Mag' is magnetic by its name: give it an offset" in note]
+    both = propose_map([write_csv(tmp_path / "both.csv", columns | magnetic | {"Heading True": true})])
+    assert 'psi = { column = "Heading True"' in both.text
+    assert not [note for note in both.notes if "magnetic" in note]

@@ -23,7 +23,7 @@ from .look import Look
 from .motions import courses, speeds, velocities, yaw_rates
 from .unsaid import asked_length, other_length
 from .windows import Windows
-from .words import ORDER, OTHER, ROLL, TIME
+from .words import ORDER, OTHER, ROLL, TIME, magnetic
 
 _OTHER_HALF = {"x": "y", "y": "x", "latitude": "longitude", "longitude": "latitude"}
 _HALF = {"x": "the position to the north", "y": "the position to the east"}
@@ -95,6 +95,11 @@ def position_and_heading(find: Finder) -> None:
         find.notes.append(
             f"{listed(passed_over)}, called a heading, is not what the course follows, {find.shown(track.psi)} is: "
             "exchange them in the map if the name is right"
+        )
+    if magnetic(find.first.names[track.psi]):
+        find.notes.append(
+            f"{find.shown(track.psi)} is magnetic by its name: give it an offset, the variation of the place with east "
+            "positive, unless the log has added it"
         )
     _add_columns(find, track, _confidence(find, motion.scores, track, course), motion.words, led)
     for name in ("x", "y") if length else ():

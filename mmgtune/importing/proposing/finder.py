@@ -15,6 +15,7 @@ from .clocks import Clock
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
 from .sampling import Sample
+from .scaled import scaled, without_factor
 from .words import ORDER, helms, numbered, of_starboard, ordered, plain, quantity_named, unit_named
 
 MOST_LOGS = 8
@@ -35,6 +36,7 @@ class Finder:
     guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
     used, numeric     columns that are something already, and those whose behaviour can be looked at
     parts             further columns of what is in several, by the first of them and by what they hold
+    factors           by what the numbers of columns were multiplied that are in parts of a unit
     ddmm              columns of degrees and minutes in one number
     as_printed        columns whose few digits are to be recovered: what was known before, and how they are printed
     looks             logs whose motion is known; unit: of time; axes: of the velocities
@@ -51,7 +53,11 @@ class Finder:
         self.own_units = {k for k, name in enumerate(self.first.names) if name in own_units}
         below = [row if any(one.units[k] == row for one in samples) else "" for k, row in enumerate(self.first.units)]
         # A unit below a name tells what it is of as one behind it does.
-        shown = [f"{name} [{row}]" if row else name for name, row in zip(self.first.names, below, strict=True)]
+        groups = self.first.groups or ("",) * len(below)
+        shown = [
+            without_factor(f"{group} {name} [{row}]" if row else f"{group} {name}".strip())
+            for group, name, row in zip(groups, self.first.names, below, strict=True)
+        ]
         counted = numbered(self.first.names)
         # Of many columns called alike the name is that of the table.
         self.said = ["" if k in counted else quantity_named(name) for k, name in enumerate(shown)]
@@ -63,7 +69,9 @@ class Finder:
         letters = {plain(name): k for k, name in enumerate(self.first.names)}
         if {"n", "e"} <= set(letters):
             self.said[letters["n"]], self.said[letters["e"]] = "x", "y"
-        self.units_said = [unit_named(name, row) for name, row in zip(self.first.names, below, strict=True)]
+        self.samples, self.factors = scaled(self.samples, self.said)
+        self.first = self.samples[0]
+        self.units_said = [unit_named(name) for name in shown]
         said = zip(self.first.names, below, self.units_said, strict=True)
         self.in_percent = {k for k, (name, row, unit) in enumerate(said) if not unit and in_percent(name, row)}
         self.units_wrong: dict[int, str] = {}
@@ -96,6 +104,11 @@ class Finder:
         if guess.column in self.own_units and "header_says" not in guess.keys:
             keys = {key: value for key, value in guess.keys.items() if key != "unit"}
             guess = replace(guess, keys=keys, evidence=(*guess.evidence, "its unit is what each log says"))
+        if guess.column is not None and (factor := self.factors.get(guess.column)):
+            keys = {**guess.keys, "scale": factor}
+            guess = replace(
+                guess, keys=keys, evidence=(*guess.evidence, f"its numbers are {1.0 / factor:.10g} times as large")
+            )
         unit = str(guess.keys.get("unit", MARK))
         if guess.column in self.in_percent and not unit.startswith(MARK):
             of = f"how many {unit} are 100 % of {self.shown(guess.column)}?"

@@ -8,6 +8,7 @@ import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +73,8 @@ class Sample:
     written  columns whose cells are positions in degrees and minutes
     sided    columns whose cells say the side, such as 35.0S; starboard is positive
     part     sheet or variable that is looked at, of several
+    groups   what stands above several names in a row of its own, such as "Steering gear" above "Order" and "Actual"; ()
+             where no row does
     second   columns that are the second half of another one, whose cells hold a latitude and a longitude each
     """
 
@@ -86,6 +89,7 @@ class Sample:
     second: Mapping[int, int] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     part: str = ""
+    groups: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -117,6 +121,7 @@ class Sample:
             numbers=[*numbers, halves[1]],
             written=self.written | {k, last},
             second={**self.second, last: k},
+            groups=(*self.groups, "") if self.groups else (),
         )
 
     def only(self, names: Sequence[str]) -> Sample:
@@ -131,6 +136,7 @@ class Sample:
             numbers=[self.numbers[k] for k in moved],
             written=frozenset(to for to, k in enumerate(moved) if k in self.written),
             sided=frozenset(to for to, k in enumerate(moved) if k in self.sided),
+            groups=tuple(self.groups[k] for k in moved) if self.groups else (),
         )
 
     def called(self, k: int, name: str, unit: str, factor: float = 1.0) -> Sample:
@@ -328,7 +334,8 @@ def _of_text(path: Path) -> Sample:
         except (ValueError, pd.errors.ParserError, UnicodeError, OverflowError) as error:
             fix = "write the map by hand, with delimiter, skip and header in [log]"
             raise LogError(Problem("the log cannot be read as a table", str(path), reason(error), fix)) from error
-    return _made(path, layout, names, below, [frame[k] for k in range(len(names))])
+    made = _made(path, layout, names, below, [frame[k] for k in range(len(names))])
+    return replace(made, groups=_groups(rows, header, names))
 
 
 def _of_parquet(path: Path) -> Sample:
@@ -481,7 +488,8 @@ def _of_sheet(path: Path, name: str, layout: dict[str, Any]) -> Sample:
     require_results(path, sheet.name, {name: one for name, one in formulas.items() if quantity_named(name)})
     made = _made(path, layout, names, below, texts)
     idle = [f"'{one}'" for one in formulas]
-    return replace(made, notes=[f"formulas without results are left out: {listed(idle, 6)}"] if idle else [])
+    notes = [f"formulas without results are left out: {listed(idle, 6)}"] if idle else []
+    return replace(made, notes=notes, groups=_groups(start, header, names))
 
 
 def _of_matlab(path: Path) -> list[Sample]:
@@ -529,6 +537,24 @@ def _named(
     if header:
         layout["skip"] = header
     return names, [*below, *[""] * (len(names) - len(below))][: len(names)]
+
+
+def _groups(rows: Sequence[Sequence[str]], header: int | None, names: Sequence[str]) -> tuple[str, ...]:
+    """What a row above the names says of several columns, over which it reaches to the next cell that is filled.
+
+    () where no row does: one that says something of one column only, or of two alike, is a title or what it may be.
+    """
+    above = [cell.strip() for cell in rows[header - 1][: len(names)]] if header else []
+    above += [""] * (len(names) - len(above))
+    filled = [k for k, cell in enumerate(above) if cell]
+    reach = list(pairwise([*filled, len(names)]))
+    several = any(end - k > 1 and all(names[k:end]) for k, end in reach)
+    if len(filled) < 2 or not several or _numeric_share(above) > 0.0:
+        return ()
+    groups = [""] * len(names)
+    for k, end in reach:
+        groups[k:end] = [above[k] if name.strip() else "" for name in names[k:end]]
+    return tuple(groups)
 
 
 def heading(rows: Sequence[Sequence[str]]) -> tuple[int, int | None, int | None, int]:

@@ -87,6 +87,9 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"经度",
         r"경도",
     )),
+    ("psi", (
+        r"\b(gyro|compass|kompass|mag\w*) (course|kurs|koers|track)\b",
+    )),
     ("cog", (
         r"\bcog\b", r"course.*ground", r"kurs.*(grund|grunn)", r"\bkurs u ?g\b", r"\bkug\b", r"\bkueg\b",
         r"grondkoers", r"koers.*grond", r"\broute\b", r"rumbo.*(fondo|efectivo)", r"track angle", r"shinro",
@@ -313,6 +316,14 @@ _TO_PORT, _TO_STARBOARD = (
     r"(?:st(?:a?r?)b(?:oar)?d|sb|stb|s|tribord|steuerbord|stuurboord|estribor|right|rechts)",
 )
 _PLUS = r"(?:\+(?:ve)?|positive?|positiv|positief|positivo)"
+
+
+def magnetic(name: str) -> bool:
+    """Whether a name says that a heading is that of a magnetic compass."""
+    return bool(_MAGNETIC.search(plain(name)))
+
+
+_MAGNETIC = re.compile(r"\bmag(n|net(ic|isch|ique|ico|ica)?)?\b|\bhdm\b")
 
 
 def side_named(name: str) -> str:

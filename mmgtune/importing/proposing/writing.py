@@ -74,7 +74,7 @@ def table_of_guesses(guesses: Mapping[str, Guess], sample: Sample) -> list[tuple
         if isinstance(several := guess.keys.get("column"), list):
             column = ", ".join(f"'{one}'" if isinstance(one, str) else f"column {one}" for one in several)
         told = [
-            ", ".join(one) if isinstance(one, list) else str(one)
+            ", ".join(one) if isinstance(one, list) else f"times {one:.3g}" if isinstance(one, float) else str(one)
             for key, one in guess.keys.items()
             if key not in ("column", "header_says")
         ]
