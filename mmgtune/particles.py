@@ -25,7 +25,8 @@ from .model import Model
 from .parquet_tables import write_table
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
-from .resources import must_be_name
+from .resources import in_run, must_be_name
+from .run_files import PARTICLES
 from .trial.footer import rows_of
 from .trial.parquet import numbers as plain_numbers
 
@@ -166,12 +167,12 @@ def save_particles(particles: Particles, path: Path | str, overwrite: bool = Fal
 
 
 def load_particles(path: Path | str) -> Particles:
-    """Read particles.  Raises ProfileError with what is wrong with the file."""
+    """Read particles: their file, or the run folder that has it.  Raises ProfileError with what is wrong with it."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     must_be_name(path, "file of particles", ProfileError)
-    path = Path(path)
+    path = in_run(path, PARTICLES) or Path(path)
     try:
         require_regular(path)
         with pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True) as file:

@@ -69,6 +69,7 @@ def test_the_most_probable_day_is_not_the_ship_either(particles):
 def test_a_file_gives_back_what_was_written(particles, tmp_path):
     path = save_particles(particles, tmp_path / "particles.parquet")
     found = load_particles(path)
+    assert np.array_equal(load_particles(tmp_path).values, found.values)  # the run folder
     assert found.names == particles.names
     assert np.array_equal(found.values, particles.values)
     assert found.facts == particles.facts

@@ -504,6 +504,7 @@ NUMBERS = ("speed", "n", "heading", "longest", "sample", "step")
         (lambda: mmgtune.make_trials([], "out"), "a list is no text (ship)"),
         (lambda: read_question(None, as_predictor(SHIP), SHIP.approach), "a NoneType is no text (question)"),
         (lambda: mmgtune.propose_map([]), "the list of logs is empty"),
+        (lambda: mmgtune.propose_map(TRIALS["turn_p35"].to_frame()), "make a trial of it: mmgtune.trial_of("),
         (lambda: mmgtune.propose_map(None), "a NoneType is no list of logs"),
         (lambda: mmgtune.import_logs(None, A_MAP, "out"), "no list of logs"),
         (lambda: mmgtune.import_logs("log", A_MAP, "out", step=HUGE), "the step is"),

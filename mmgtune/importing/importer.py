@@ -240,6 +240,11 @@ def import_logs(
 
 def paths_of(logs: Path | str | Sequence[Path | str]) -> tuple[Path, ...]:
     """The paths of logs, each once; of one the path alone does.  Raises LogError for what is none, and for no logs."""
+    if hasattr(logs, "columns"):
+        what, why = "a table is no log", "logs are files, and this one is in memory already"
+        raise LogError(
+            Problem(what, "logs", why, "make a trial of it: mmgtune.trial_of(table, 'turn_p35', ship='...')")
+        )
     several = [logs] if isinstance(logs, (str, Path)) else parts_of(logs)
     if not several:
         what = "the list of logs is empty" if several == [] else f"{kind_of(logs)} is no list of logs"

@@ -45,7 +45,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     ignored, words = [], []
     for given in table.keys():  # noqa: SIM118  the names of a DataFrame, and of a mapping
         name, column = _named(str(given)), numbers_of(table[given])
-        if name in columns:
+        if name in columns or hasattr(table[given], "columns"):  # a name that a DataFrame has twice is a DataFrame
             why, fix = f"'{given}' is '{name}', and a trial has one of it", "leave one of the two out"
             raise TrialError(Problem(f"column '{name}' is there twice", where, why, fix))
         if column is None and name not in REQUIRED:
@@ -76,14 +76,30 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
 
 
 def with_time(table: Any) -> Any:
-    """The table with its index for its time, where that is called so or holds dates and times; else as it is."""
+    """The table with its index for its time, where that is called so or holds dates and times, and with dates and times
+    in a column "t" as seconds; else as it is."""
     index: Any = getattr(table, "index", None)
-    time, dated = str(getattr(index, "name", None)), getattr(getattr(index, "dtype", None), "kind", "") in ("M", "m")
-    if not (dated or name_and_unit(time)[0] == "t") or not hasattr(table, "keys") or "t" in table or time in table:
+    if not hasattr(table, "keys"):
         return table
-    if dated:
-        index, time = (index - index[:1].min()) / np.timedelta64(1, "s"), "t"  # of no rows too
+    if "t" in table:
+        dated = _dated(table["t"])
+        return {**{name: table[name] for name in table}, "t": _seconds(table["t"])} if dated else table
+    time = str(getattr(index, "name", None))
+    if not (_dated(index) or name_and_unit(time)[0] == "t") or time in table:
+        return table
+    if _dated(index):
+        index, time = _seconds(index), "t"
     return {time: index, **{name: table[name] for name in table}}
+
+
+def _dated(column: Any) -> bool:
+    """Whether a column holds dates and times, or lengths of time."""
+    return getattr(getattr(column, "dtype", None), "kind", "") in ("M", "m")
+
+
+def _seconds(column: Any) -> Any:
+    """Dates and times in seconds from the first."""
+    return (column - column[:1].min()) / np.timedelta64(1, "s")  # of no rows too
 
 
 def _named(header: str) -> str:

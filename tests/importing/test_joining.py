@@ -169,6 +169,20 @@ def test_a_structure_for_each_sensor(tmp_path):
     close_to_run(trial, 1.0, 0.02)
 
 
+def test_a_structure_whose_sensor_is_read_later_has_its_own_times(tmp_path):
+    """At 1 s a row, 0.3 s are a rate of 2.3 deg/s times that: it was taken for the same time."""
+    late = RUN.t + 0.3
+    of_rudder = {"t": late, "value": at(late, RUN.delta) / DEG}
+    rest = {one: columns for one, columns in held(RUN.t).items() if one != "rudder"}
+    scipy.io.savemat(tmp_path / "log.mat", rest | {"rudder": of_rudder})
+    proposal, _ = one_trial(tmp_path / "log.mat")
+    assert "'rudder' have times of their own" in proposal.notes[0]
+    found = columns_of(tmp_path / "log.mat")
+    rudder = np.asarray(found.columns[found.names.index("rudder.value")])
+    time = np.asarray(found.columns[found.names.index("gps.t")])
+    assert time[np.isfinite(rudder)] == pytest.approx(late)
+
+
 def test_a_structure_without_times_in_common_is_left_out_and_told(tmp_path):
     scipy.io.savemat(tmp_path / "log.mat", held() | {"wind": {"t": 1e4 + FINE[:50], "speed": FINE[:50]}})
     found = columns_of(tmp_path / "log.mat")

@@ -44,6 +44,20 @@ def test_dates_and_times_of_an_index_count_from_the_first(table, zone):
         np.testing.assert_allclose(trial.t, np.asarray(table["t"]) - table["t"].iloc[0], atol=1e-9)
 
 
+@pytest.mark.parametrize("made", [pd.DataFrame, dict])
+def test_dates_and_times_in_the_column_of_time_count_from_the_first(table, made):
+    """They were "no numbers", and what pandas.to_numeric makes of them is not seconds."""
+    stamps = pd.Timestamp("2026-03-01 23:59:50") + pd.to_timedelta(np.asarray(table["t"]), unit="s")
+    trial = trial_of(made(pd.DataFrame(table).assign(t=stamps)), "a")
+    np.testing.assert_allclose(trial.t, np.asarray(table["t"]) - table["t"].iloc[0], atol=1e-9)
+
+
+def test_a_name_that_a_frame_has_twice_is_told(table):
+    frame = pd.concat([pd.DataFrame(table), pd.DataFrame(table)[["x"]]], axis=1)
+    with pytest.raises(TrialError, match="column 'x' is there twice"):
+        trial_of(frame, "a")
+
+
 def test_a_frame_goes_back_into_a_trial():
     trial = next(iter(load_trials("suzaku")))
     again = trial_of(trial.to_frame(), trial.id)
@@ -66,7 +80,7 @@ def test_a_frame_goes_back_into_a_trial():
             "column 'u' holds no numbers (one)\n  why: it begins with 'fast', a str",
         ),
         (lambda table: table.assign(x=table.x.astype(str)), "by pandas.to_numeric(table['x'])"),
-        (lambda table: table.assign(t=pd.to_timedelta(table.t, unit="s")), "column 't' holds no numbers"),
+        (lambda table: table.assign(t=table.t.astype(str)), "column 't' holds no numbers"),
         (lambda table: {**table, "u": table.u[:9]}, "samples, 'u' 9"),
         (lambda table: table.rename(columns={"psi": "psi [deg]"}), "give it as 'psi [rad]'"),
         (lambda table: table.assign(**{"u [m/s]": table.u}), "'u' is there twice"),
