@@ -13,7 +13,7 @@ from typing import Any
 import typer
 
 from ..errors import Problem, among, near_to
-from ..phrases import small
+from ..phrases import counted, small
 from ..run_files import PARTICLES
 from ..units import with_point
 
@@ -131,7 +131,7 @@ def _unknown_option(name: str, ctx: Any) -> Problem:
         why = f"{path} takes {', '.join(takes)}, with no option before"
         fix = f"write {as_arguments(sys.argv[1:], ctx) or _example(ctx) or f'{path} --help'}"
         return Problem(f"unknown option {name}", path, why, fix)
-    why = f"{path} has {len(known)} options, and none is called that"
+    why = f"{path} has {counted(len(known), 'option')}, and none is called that"
     elsewhere = [others for others, command in _commands(ctx.find_root().command) if name in _flags(command)]
     if elsewhere:
         why += f"; these have it: {', '.join(elsewhere[:10])}{' and others' * (len(elsewhere) > 10)}"

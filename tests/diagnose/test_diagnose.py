@@ -148,6 +148,11 @@ def test_a_wind_does_not_beat_waves_by_its_formula_alone(of_rival, tag, beaten):
     """A drift force by another law was a wind, whose fall of chi-squared was 87 of 481 000 greater."""
     wind, rival = rivalling(500_000.0, 10.0, tag="wind"), rivalling(of_rival, 10.0, tag=tag)
     assert wind.beats(rival) == beaten
+    left = [
+        rivalling(gain, 10.0, tag=of, left=chi2)
+        for gain, of, chi2 in ((5e5, "wind", 1e3), (4.99e5 + 600.0, tag, 2.1e3))
+    ]
+    assert left[0].beats(left[1])  # what fits to the noise has no formula that is off
     assert rivalling(1000.0, 10.0, tag="wind").beats(rivalling(970.0, 10.0, tag="wave-drift"))
 
 

@@ -186,6 +186,22 @@ def test_what_was_near_to_another_form_of_a_cause_is_its_rival(monkeypatch, gain
     assert beside == (["thrust"] if rivals else [])
 
 
+@pytest.mark.parametrize(("left", "rivals"), [(14_300.0, ["rpm-scale"]), (19_800.0, [])])
+def test_rivals_are_judged_anew_where_the_noise_was_known_badly(monkeypatch, left, rivals):
+    """Waves and a wind of 12 m/s left as much in a noise that was taken for half as large again as it was."""
+    refits = [fitted("loading", 6_000.0, 1.0, 0.0), fitted("rpm-scale", 5_998.0, 1.0, 0.0)]
+    refits = [replace(one, point=SimpleNamespace(chi2=14_000.0)) for one in refits]
+    base, cause = SimpleNamespace(chi2=20_000.0, names=()), refits[0].hypothesis
+    final = SimpleNamespace(chi2=left)
+    steps = [Step(base, None, [], refits, [], True, "")]
+    found = SimpleNamespace(causes=[cause], final=final, base=base, steps=steps, left_out=[])
+    monkeypatch.setattr(search, "without", lambda *_: SimpleNamespace(chi2=1e6, names=()))
+    monkeypatch.setattr(search, "hopeless_beside", lambda *_: math.inf)
+    monkeypatch.setattr(search, "_where", lambda point, _: point)
+    monkeypatch.setattr(search, "fitted_beside", lambda *_: SimpleNamespace(chi2=left + 4_000.0))
+    assert [one.hypothesis.tag for one in search.rivals_of(None, found, cause)] == rivals
+
+
 @pytest.mark.parametrize(
     ("forms", "told"),
     [

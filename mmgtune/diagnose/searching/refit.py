@@ -21,9 +21,10 @@ AS_MUCH, AS_LITTLE = 0.97, 0.9
 """Share of the fall of chi-squared, and of what is left, within which one value of an effect for all runs is a rival of
 values of another that differ between runs: these bend to an effect whose form is a little off."""
 
-OF_FORMULA = 0.001
+OF_FORMULA, LEFT_BY_IT = 0.001, 2.0
 """Share of the fall of chi-squared that another may bring less, where both are forces of wind and waves: as much is
-left by a formula that is 3 % off, and these differ by more from ship to ship."""
+left by a formula that is 3 % off, and these differ by more from ship to ship.  But what leaves twice what the other
+does is none: then that one's formula is not off."""
 
 AKIN = 0.3
 """Share of the fall of chi-squared from which on an effect that acts much like the best may be meant."""
@@ -91,7 +92,8 @@ class Refit:
     def _of_formula(self, other: Refit) -> bool:
         """Whether both are forces of wind and waves, between which no more than the formula decides."""
         both = unsteady(self.hypothesis.effect) and unsteady(other.hypothesis.effect)
-        return both and other.gain >= (1.0 - OF_FORMULA) * self.gain
+        as_much = other.gain >= (1.0 - OF_FORMULA) * self.gain
+        return both and as_much and other.point.chi2 <= LEFT_BY_IT * self.point.chi2
 
 
 def believable_first(refits: list[Refit], level: float) -> list[Refit]:

@@ -239,13 +239,18 @@ class Refitter:
             others.append(self.bench.null([point.names[i] for i in kept]))
         return np.column_stack([np.concatenate([z, np.clip(place, 0.0, 1.0)]) for z in others for place in places])
 
-    def steps(self, point: Point, score: Score, starts: FloatArray, iterations: int) -> list[Point]:
-        """A number of steps of fits with a hypothesis, from starts at a point and its offsets."""
+    def steps(
+        self, point: Point, score: Score, starts: FloatArray, iterations: int, names: Sequence[str] = ()
+    ) -> list[Point]:
+        """A number of steps of fits with a hypothesis, from starts at a point and its offsets.
+
+        names  of the rows of ``starts``, those of forms among them, where they are not what is free at the point
+        """
         hypothesis = score.hypothesis
         return self.known.note(
             hypothesis,
             self.bench.refits(
-                free_with(point, hypothesis),
+                names or free_with(point, hypothesis),
                 starts,
                 point.offsets,
                 max_iterations=iterations,

@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from ...fitting.box import base_of
 from ...profile import scale_of
 from ..bench.hypotheses import Hypothesis
 from ..bench.workbench import Point, Workbench
@@ -16,7 +17,7 @@ from ..signatures.beside import free_with, kept_free, origin
 from ..signatures.linear import inwards, typical
 from ..signatures.screening import ChanceScores, Score, evidence, told_by
 from .refit import ENOUGH, Refit
-from .refitter import HOPELESS, Refitter
+from .refitter import HOPELESS, SIZES, STARTS_KEPT, Known, Refitter
 from .shortlist import Shortlist, akin
 
 FAR_LESS = 1.0 / 3.0
@@ -66,6 +67,8 @@ class Refitting:
         fitted = self._fitted(shortlist.for_all_runs(order, quick=quick))
         fitted += self._fitted(shortlist.of_runs(order, [end for _, end in fitted], quick=quick))
         fitted += self._fitted(akin(order, fitted, refitter.point.chi2))
+        if refitter.strong and not quick:
+            fitted = self._from_their_kin(fitted)
         fitted = [(score, self._beside_fewer(score, end, fitted)) for score, end in fitted]
         fitted = [(score, end) for score, end in fitted if self._may_be_of_runs(score.hypothesis, end)]
         asked = [s.hypothesis for s in ranked]
@@ -126,9 +129,50 @@ class Refitting:
             beside = [dict(zip(more, np.clip(null + step * size, 0.0, 1.0), strict=True)) for step in steps]
             starts = np.array([[{**known, **one}[name] for name in end.names] for one in beside]).T
             begun = replace(refitter.point, offsets=there.offsets)
-            end = min([end, *refitter.steps(begun, score, starts, MOST_STEPS)], key=lambda one: one.chi2)
+            again = refitter.steps(begun, score, starts, MOST_STEPS, end.names)
+            end = min([end, *again], key=lambda one: one.chi2)
             own = dict(zip(end.names, end.unit, strict=True))
             refitter.known.ends[asked.names] = end
+        return end
+
+    def _from_their_kin(self, fitted: Sequence[tuple[Score, Point]]) -> list[tuple[Score, Point]]:
+        """Refits of hypotheses with one value for all runs, begun again where one that acts much like it, or the same
+        with values of each run, ended better; what ends better then may lead others on.
+
+        From a ship that is far off no way may lead to a strong wind, where one led to a force of waves much like it.
+        """
+        ends = [end for _, end in fitted]
+        for _ in range(2):
+            best = {}
+            for k, (score, _) in enumerate(fitted):
+                asked = score.hypothesis
+                kin = [j for j, (of, _) in enumerate(fitted) if not asked.by and _are_kin(asked, of.hypothesis)]
+                nearest = min(kin, key=lambda j: ends[j].chi2, default=k)
+                if ends[nearest].chi2 < ends[k].chi2 - ENOUGH:
+                    best[k] = nearest
+            for k, nearest in best.items():
+                self.refitter.go_on()
+                ends[k] = self._in_the_place_of(fitted[nearest][0].hypothesis, ends[nearest], fitted[k][0], ends[k])
+        return [(score, end) for (score, _), end in zip(fitted, ends, strict=True)]
+
+    def _in_the_place_of(self, other: Hypothesis, there: Point, score: Score, end: Point) -> Point:
+        """The refit of a hypothesis with the ship as tuned beside another one, from the sizes that do best there."""
+        asked, refitter, n_own = score.hypothesis, self.refitter, len(score.hypothesis.names)
+        values = dict(zip(there.names, there.unit, strict=True))
+        begun = replace(refitter.point, offsets=there.offsets)
+        places = [refitter.starts(begun, score, SIZES)[-n_own:], end.unit[-n_own:]]
+        if other.bases == asked.bases:
+            of_runs = {base: [z for name, z in values.items() if base_of(name) == base] for base in asked.bases}
+            places.append(np.array([np.mean(of_runs[base]) for base in asked.bases]))
+        own = np.column_stack(places)
+        rest = [values.get(name, z) for name, z in zip(end.names[:-n_own], end.unit[:-n_own], strict=True)]
+        starts = np.concatenate([np.repeat(np.array(rest)[:, None], own.shape[1], axis=1), own])
+        alone = replace(refitter, known=Known())  # nothing is hopeless for what the other explains
+        left = [one.chi2 for one in alone.steps(begun, score, starts, 0, end.names)]
+        nearest = np.argsort(left, kind="stable")[:STARTS_KEPT]
+        ends = alone.steps(begun, score, starts[:, nearest], ALL_STEPS, end.names)
+        end = min([end, *ends], key=lambda one: one.chi2)
+        refitter.known.ends[asked.names] = end
         return end
 
     def _may_be_of_runs(self, hypothesis: Hypothesis, end: Point) -> bool:
@@ -200,6 +244,11 @@ class Refitting:
             chance.p_value(evidence(max(gain / score.inflation - volume, 0.0), k)) if chance else 1.0,
             _unvisited(bench, end, hypothesis),
         )
+
+
+def _are_kin(one: Hypothesis, other: Hypothesis) -> bool:
+    """Whether another hypothesis acts much like one with a value for all runs, or is the same with values of each."""
+    return other.bases == one.bases if other.by else other.tag in one.effect.akin
 
 
 def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:

@@ -39,6 +39,10 @@ TOO_MANY = 4
 AS_WELL = 0.02
 """Share by which the gains of two effects differ at most that do as well as each other at the first look."""
 
+OTHER_NOISE = 0.1
+"""Share of chi-squared by which a cause left more or less when it was found than in the end, from which its rivals are
+judged anew: the noise was known badly then, and what it hid may tell them apart."""
+
 ALIKE, HARDLY = 0.0005, 0.05
 """Share of the fall of chi-squared, and chi-squared per residual, that one value for all may leave beside values of
 each run to be taken for them: a current that is the same within a hundredth belongs in the profile."""
@@ -341,7 +345,8 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
     if step is None:
         return []
     others = [one for one in found.steps if one is not step and one.accepted and _is_of(one, cause)]
-    if len(found.causes) == 1 and not others and not found.left_out:
+    in_other_noise = abs(found.final.chi2 - step.refits[0].point.chi2) > OTHER_NOISE * found.final.chi2
+    if len(found.causes) == 1 and not others and not found.left_out and not in_other_noise:
         return rivals_among(step.refits)
     near = [*(rival for one in (step, *others) for rival in _near(one, cause)), *found.left_out]
     fewer = without(bench, found.final, cause)

@@ -38,8 +38,9 @@ LIKELY = 9
 BEGUN, STARTS_BEGUN = 18, 3
 """Hypotheses, and starts of each, that make these first steps: those for which derivatives predict the largest gain."""
 
-RUNS_REFITTED = 6
-"""Hypotheses of values that differ between runs that are refitted each time, at most."""
+RUNS_REFITTED, AS_GOOD = 6, 0.85
+"""Hypotheses of values that differ between runs that are refitted each time, at most; and share of the best score from
+which further ones are where much is left, as scores choose badly there."""
 
 MUCH = 0.5
 """Share of what the best explains from which forms with more parameters are refitted too."""
@@ -210,7 +211,9 @@ class Shortlist:
         price = self.refitter.bench.price
         earned = [s for s in differing if s.score - self.refitter.n_new(s.hypothesis) * price > 0.5 * ENOUGH]
         if left > STRONG * n:
-            return earned[: 1 if quick else RUNS_REFITTED]
+            best = max((s.score for s in earned), default=0.0)
+            nearly = [s for s in earned[RUNS_REFITTED:] if s.score > AS_GOOD * best]
+            return earned[:1] if quick else earned[:RUNS_REFITTED] + nearly
         alike = max((s.score / s.inflation - len(s.step) * price for s in order if not s.hypothesis.by), default=0.0)
         better = [s for s in earned if s.score - self.refitter.n_new(s.hypothesis) * price > alike]
         # Where much was left before, scores are far off: the zero of the rudder in one run is behind a wind there.
