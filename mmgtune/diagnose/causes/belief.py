@@ -165,8 +165,9 @@ class Belief:
             return "what they leave is more than noise"
         if terms > 2 and self.groups and (self.differs_by_run or _least_may_be_form(self.causes, brought)):
             return "not all of them can be told from others"
-        several = sum(bool(cause.runs) for cause in self.causes) > 1
-        if several and (terms > 2 or not self.explains_all):
+        several = [cause for cause in self.causes if cause.runs]
+        alike = any(one.effect and other.tag in one.effect.akin for one in several for other in several)
+        if len(several) > 1 and (terms > 2 or alike or not self.explains_all):
             return "more than one of them differs from run to run"
         if self.gain.share_removed < TOLD and not (self.gain.tells_nothing and self._all_by_each):
             return "it removes little of the error where nothing was fitted"
