@@ -324,15 +324,14 @@ def test_a_wind_that_pushes_by_another_formula_is_not_two_causes():
 )
 def test_of_two_that_act_alike_one_is_told(tags, by, seen, far, holds, told, monkeypatch):
     causes = [SimpleNamespace(tag=tag, effect=find_effect(tag), by=by) for tag in tags]
-    found = SimpleNamespace(causes=causes)
+    found = SimpleNamespace(causes=causes, final=None)
     brought = tuple((one.tag, SimpleNamespace(seen=share)) for one, share in zip(causes, seen, strict=True))
     result = Answered(contributions=brought)
     monkeypatch.setattr(judging, "with_only", lambda bench, found, causes: SimpleNamespace(causes=causes))
     monkeypatch.setattr(judging, "contributions", lambda *asked: [])
     judge = SimpleNamespace(
-        bench=None,
+        bench=SimpleNamespace(is_deformed=lambda point, effect: far),
         unseen=None,
-        _is_deformed=lambda found, cause: far,
         _judged=lambda found, brought: found,
         _compared=lambda result, found: Answered(((found.causes[0].tag, None),), (), holds, holds),
     )

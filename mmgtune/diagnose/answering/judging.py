@@ -55,9 +55,6 @@ much like it does as well then: wind and the drift of waves."""
 EITHER = 0.1
 """Share of what all causes do that is lost without one of two that act alike, up to which the other does it all."""
 
-FORM_OFF = 2.0
-"""Standard deviations of a form from which it is another one."""
-
 OF_RUNS_OFF = 0.03
 """The same of values of each run, which bend to most of it, with what gusts are thought to leave."""
 
@@ -220,7 +217,7 @@ class Judge:
         alike_in_all = [cause for cause in found.causes if not cause.by]
         for more, less in combinations(sorted(alike_in_all, key=lambda cause: -brings[id(cause)]), 2):
             alike = {more.tag, less.tag} & {*more.effect.akin, *less.effect.akin}
-            far = self._is_deformed(found, more) and self._is_deformed(found, less)
+            far = all(self.bench.is_deformed(found.final, cause.effect) for cause in (more, less))
             if alike and far and brings[id(more)] < EITHER:
                 fewer = with_only(self.bench, found, [one for one in found.causes if one is not less])
                 other = self._compared(self._judged(fewer, contributions(self.bench, fewer, self.unseen)), fewer)
@@ -230,13 +227,6 @@ class Judge:
                     told = tuple((tag, *groups[tag]) for tag, _ in other.contributions if tag in groups)
                     return replace(other, groups=told), fewer
         return result, found
-
-    def _is_deformed(self, found: Found, cause: Hypothesis) -> bool:
-        """Whether the form of a cause is far from what its formula has."""
-        bench, there = self.bench, dict(zip(found.final.names, found.final.unit, strict=True))
-        form = [name for name in bench.believed.form_of(cause.effect) if name in there]
-        off = np.abs([there[name] for name in form] - bench.null(form)) if form else np.zeros(0)
-        return bool(np.any(off > FORM_OFF * np.array([bench.believed.forms[name] for name in form])))
 
     def _judged(self, found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
         """The answer before its causes are compared with their rivals."""

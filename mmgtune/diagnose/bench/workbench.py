@@ -13,7 +13,7 @@ import numpy as np
 from ...arrays import FloatArray, IntArray
 from ...backends import STATES, Integrator, get_backend
 from ...components import split_name
-from ...effects import Parameter, Visited, effect_tags
+from ...effects import Effect, Parameter, Visited, effect_tags
 from ...fitting.box import Box, base_of, choose_targets, group_of, make_box, parameter_of
 from ...fitting.least_squares import LeastSquaresResult, solve
 from ...fitting.one_sided import followers, tied
@@ -34,6 +34,9 @@ TOLERANCE = 0.2
 
 STEPS, HARDLY = 20, 0.01
 """Steps of a fit that only has to show what there is to gain, and share of what it is held against that is nothing."""
+
+FORM_OFF = 2.0
+"""Standard deviations of a form from which it is another one."""
 
 LOOSE = 3.0
 """Initial states may leave their first sample by this many deviations of white noise before noise is known better."""
@@ -322,6 +325,14 @@ class Workbench:
             coefficients[symbol] = replace(coefficients[symbol], value=value)
             sections[kind] = replace(sections[kind], coefficients=coefficients)
         return replace(profile, sections=sections)
+
+    def is_deformed(self, point: Point, effect: Effect | None = None) -> bool:
+        """Whether the form of an effect, or of any where none is named, is far from what its formula has."""
+        there = dict(zip(point.names, point.unit, strict=True))
+        asked = self.believed.form_of(effect) if effect else self.believed.forms
+        form = [name for name in asked if name in there]
+        off = np.abs([there[name] for name in form] - self.null(form)) if form else np.zeros(0)
+        return bool(np.any(off > FORM_OFF * np.array([self.believed.forms[name] for name in form])))
 
     def values(self, point: Point) -> dict[str, float]:
         """Values of the free parameters, by name, in profile units."""

@@ -87,7 +87,10 @@ def _told(bench: Workbench, point: Point, names: tuple[str, ...]) -> tuple[Float
     """Information of the residuals on the free parameters, all else re-tuned: the triangle R of their columns, the
     covariance of noise along these, and the step of each column in the unit cube."""
     linear = linearise(bench, point, apart=names)
-    Q, R = np.linalg.qr(linear.columns(names))
+    columns = linear.columns(names)
+    if not bench.is_deformed(point):  # another form explains what gusts would have left, and is told too well then
+        linear = linear.with_inputs_seen(point.chi2, columns)
+    Q, R = np.linalg.qr(columns)
     by_block, by_trial = linear.chance(Q)
     told = len(R)  # directions of residuals: fewer than columns where there are fewer residuals
     memory = max(1.0, float(np.sum(by_block**2)) / told)

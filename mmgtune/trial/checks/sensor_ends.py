@@ -139,9 +139,10 @@ def _means(trial: Trial, told: FloatArray, logged: FloatArray) -> tuple[FloatArr
 
 def _end(told: FloatArray, logged: FloatArray, samples: float) -> End | None:
     """Where a log ends that goes as is told otherwise, by means over so many samples; None for nowhere."""
-    if len(told) < 2 * SO_MANY or not np.any(told) or not np.any(logged):
+    way = float(told @ told)  # of numbers below 1e-160 it is none
+    if len(told) < 2 * SO_MANY or not way > 0.0 or not np.any(logged):
         return None
-    scale = float(told @ logged) / float(told @ told)
+    scale = float(told @ logged) / way
     ends = np.linspace(0.5, 1.05, 56) * np.abs(logged).max()
     left = np.sum((logged - np.clip(told, -ends[:, None], ends[:, None])) ** 2, axis=1)
     end = float(ends[int(np.argmin(left))])
