@@ -51,6 +51,8 @@ def profile_text(profile: ShipProfile) -> str:
         now, was = getattr(profile, name), getattr(before, name)
         if now and now.source != (was.source if was else ""):
             _table(document, name)["source"] = now.source
+            if not now.source:
+                del _table(document, name)["source"]
         numbers = {key: getattr(now, key) for key in fields} if now else {}
         _write_numbers(document, name, numbers, {key: getattr(was, key) for key in fields} if was else {}, fields)
     for name in dict.fromkeys((*before.actuators, *profile.actuators)):

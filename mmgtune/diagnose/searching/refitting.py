@@ -156,19 +156,24 @@ class Refitting:
         return [(score, end) for (score, _), end in zip(fitted, ends, strict=True)]
 
     def _in_the_place_of(self, other: Hypothesis, there: Point, score: Score, end: Point) -> Point:
-        """The refit of a hypothesis with the ship as tuned beside another one, from the sizes that do best there."""
+        """The refit of a hypothesis with the ship as tuned beside another one, from the sizes that do best there.
+
+        Of values of each run it is their mean; where these are not alike, it does no better than what there is.
+        """
         asked, refitter, n_own = score.hypothesis, self.refitter, len(score.hypothesis.names)
         values = dict(zip(there.names, there.unit, strict=True))
         begun = replace(refitter.point, offsets=there.offsets)
-        places = [refitter.starts(begun, score, SIZES)[-n_own:], end.unit[-n_own:]]
-        if other.bases == asked.bases:
+        if other.by:
             of_runs = {base: [z for name, z in values.items() if base_of(name) == base] for base in asked.bases}
-            places.append(np.array([np.mean(of_runs[base]) for base in asked.bases]))
-        own = np.column_stack(places)
+            own = np.array([[np.mean(of_runs[base])] for base in asked.bases])
+        else:
+            own = np.column_stack([refitter.starts(begun, score, SIZES)[-n_own:], end.unit[-n_own:]])
         rest = [values.get(name, z) for name, z in zip(end.names[:-n_own], end.unit[:-n_own], strict=True)]
         starts = np.concatenate([np.repeat(np.array(rest)[:, None], own.shape[1], axis=1), own])
         alone = replace(refitter, known=Known())  # nothing is hopeless for what the other explains
         left = [one.chi2 for one in alone.steps(begun, score, starts, 0, end.names)]
+        if other.by and not min(left) < end.chi2:
+            return end
         nearest = np.argsort(left, kind="stable")[:STARTS_KEPT]
         ends = alone.steps(begun, score, starts[:, nearest], ALL_STEPS, end.names)
         end = min([end, *ends], key=lambda one: one.chi2)
