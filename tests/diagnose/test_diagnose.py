@@ -500,3 +500,13 @@ def test_the_command_writes_a_folder_and_tells_ci(tmp_path):
     assert "unknown verdict" in wrong.err
     taken = run("diagnose", "-t", "trials", "--out", "run", cwd=tmp_path)
     assert taken.code == 2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_very_shallow_water_is_told(seed, tmp_path):
+    """1.7 draughts were another draught on two ships and nothing at all on a third."""
+    result = said_of(single("shallow-water", 4, seed), tmp_path)
+    assert [one.tag for one in result.causes] == ["shallow-water"]
+    depth = result.causes[0].estimates["effects.shallow-water.depth"]
+    assert depth.low - 0.1 < 6.5 < depth.high

@@ -13,6 +13,7 @@ from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.bench import workbench
 from mmgtune.diagnose.bench.hypotheses import Hypothesis, known_causes
 from mmgtune.diagnose.bench.workbench import Point, make_workbench
+from mmgtune.diagnose.searching import refitter as refitter_module
 from mmgtune.diagnose.searching import refitting
 from mmgtune.diagnose.searching.base_fit import base_fit
 from mmgtune.diagnose.searching.look import _as_given as as_given
@@ -232,6 +233,34 @@ def test_one_value_for_all_begins_again_at_the_mean_of_those_of_each_run(left, m
     means = [np.mean([z for name, z in of_each.items() if base_of(name) == base]) for base in one.names]
     np.testing.assert_allclose(end.unit, [0.3, *means])
     assert len(starts) == 2  # what is done twice leads nowhere else
+
+
+def test_where_leeway_is_given_back_a_form_stays_and_far_sizes_are_tried(monkeypatch):
+    """Water of 1.7 draughts was found with the hull held, and lost with its form as leeway was given back; on other
+    ships it went back to deep water already there.  It was told as another draught, or nothing was wrong."""
+    water = find_effect("shallow-water")
+    depth, form = "effects.shallow-water.depth", "effects.shallow-water.Y_v"
+    names, begun, null = ("hull.R_0", "hull.Y_v"), [], {depth: 0.0}
+    end = Point((form, "hull.R_0", depth), np.array([0.3, 0.4, 0.6]), np.ones((1, 6)), 50.0, Integrator())
+    monkeypatch.setattr(refitter_module, "replace", lambda of, **what: SimpleNamespace(**{**vars(of), **what}))
+    refitter = SimpleNamespace(
+        bench=SimpleNamespace(
+            believed=SimpleNamespace(forms={form: 0.1}), null=lambda of: np.array([null.get(name, 0.5) for name in of])
+        ),
+        point=Point(names, np.array([0.9, 0.8]), np.zeros((1, 6)), 90.0, Integrator()),
+        before=Point(names[:1], np.array([0.7]), np.zeros((1, 6)), 900.0, Integrator()),
+        known=Known(least=1.0),
+        starts=lambda point, score, sizes: np.full((3, 1), 0.7),
+        steps=lambda point, score, starts, steps, free=(): begun.append((point.offsets[0, 0], starts, free)) or [end],
+    )
+    score = SimpleNamespace(hypothesis=Hypothesis(water, ("depth",)))
+    assert Refitter._released(refitter, score, end) == [end, end, end]
+    (offset, on, free), (other, by_score, of_point), (_, far, again) = begun
+    assert (offset, other, of_point) == (1.0, 0.0, ())
+    assert free == again == (form, *names, depth)
+    np.testing.assert_allclose(on[:, 0], [0.3, 0.4, 0.5, 0.6])  # the hull at the profile's, which had no leeway
+    np.testing.assert_allclose(by_score, 0.7)
+    np.testing.assert_allclose(far.T, [[0.5, 0.7, 0.5, 1.0 / 3.0], [0.5, 0.7, 0.5, 2.0 / 3.0]])
 
 
 @pytest.mark.long

@@ -51,6 +51,10 @@ OTHER_SIZES, LOST = (0.85, 0.7, 0.5, 2.0), 0.1
 the rudder at 28 deg a step may lead beyond all angles there are, where nothing leads back to 39."""
 
 
+OF_RANGE = (1.0 / 3.0, 2.0 / 3.0)
+"""Shares of the range of an effect with one side only at which it begins where leeway is given back."""
+
+
 class Stopped(Exception):
     """Raised where a look was stopped before its end; it has no result."""
 
@@ -204,15 +208,27 @@ class Refitter:
         return self.steps(there, score, start[:, None], ROUGH)
 
     def _released(self, score: Score, end: Point) -> list[Point]:
-        """A few steps with leeway, continued from a refit without, and from the step that the score promises."""
-        names = [self.point.names[i] for i in kept_free(self.point, score.hypothesis)]
+        """A few steps with leeway, continued from a refit without, whose form stays, from the step that the score
+        promises, and, of an effect with one side only, from far sizes beside the targets as tuned without leeway.
+
+        In very shallow water the refit without leeway goes back to deep water, so much are all targets off there.
+        """
         there = dict(zip(end.names, end.unit, strict=True))
-        own = [there.get(name, z) for name, z in zip(names, self.bench.null(names), strict=True)]
+        free = free_with(self.point, score.hypothesis)
+        names = (*(name for name in there if name in self.bench.believed.forms and name not in free), *free)
+        null = self.bench.null(names)
+        on = np.array([there.get(name, z) for name, z in zip(names, null, strict=True)])
         by_score = self.starts(self.point, score, ())[:, 0]
-        on = np.array([*own, *(there[name] for name in score.hypothesis.names)])
-        found = []
-        for offsets, start in ((end.offsets, on), (self.point.offsets, by_score)):
-            found += self.steps(replace(self.point, offsets=offsets), score, start[:, None], ROUGH)
+        found = self.steps(replace(self.point, offsets=end.offsets), score, on[:, None], ROUGH, names)
+        found += self.steps(self.point, score, by_score[:, None], ROUGH)
+        given, n_own = self.before, len(score.hypothesis.names)
+        if not score.hypothesis.by and bool(inwards(null[-n_own:]).any()):
+            as_given = dict(zip(given.names, given.unit, strict=True))
+            rest = [as_given.get(name, z) for name, z in zip(names[:-n_own], null, strict=False)]
+            own, away = null[-n_own:], inwards(null[-n_own:])
+            starts = np.array([[*rest, *(own + share * away)] for share in OF_RANGE]).T
+            alone = replace(self, known=Known())  # so far from it that nothing is hopeless yet
+            found += alone.steps(self.point, score, starts, 2 * ROUGH, names)
         return found
 
     def starts(self, point: Point, score: Score, sizes: Sequence[float]) -> FloatArray:
