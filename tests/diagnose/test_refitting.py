@@ -253,6 +253,7 @@ def test_where_leeway_is_given_back_a_form_stays_and_far_sizes_are_tried(monkeyp
         starts=lambda point, score, sizes: np.full((3, 1), 0.7),
         steps=lambda point, score, starts, steps, free=(): begun.append((point.offsets[0, 0], starts, free)) or [end],
     )
+    refitter._from_far = lambda score, names: Refitter._from_far(refitter, score, names)
     score = SimpleNamespace(hypothesis=Hypothesis(water, ("depth",)))
     assert Refitter._released(refitter, score, end) == [end, end, end]
     (offset, on, free), (other, by_score, of_point), (_, far, again) = begun

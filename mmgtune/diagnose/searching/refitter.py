@@ -209,7 +209,7 @@ class Refitter:
 
     def _released(self, score: Score, end: Point) -> list[Point]:
         """A few steps with leeway, continued from a refit without, whose form stays, from the step that the score
-        promises, and, of an effect with one side only, from far sizes beside the targets as tuned without leeway.
+        promises, and from far.
 
         In very shallow water the refit without leeway goes back to deep water, so much are all targets off there.
         """
@@ -221,15 +221,22 @@ class Refitter:
         by_score = self.starts(self.point, score, ())[:, 0]
         found = self.steps(replace(self.point, offsets=end.offsets), score, on[:, None], ROUGH, names)
         found += self.steps(self.point, score, by_score[:, None], ROUGH)
-        given, n_own = self.before, len(score.hypothesis.names)
-        if not score.hypothesis.by and bool(inwards(null[-n_own:]).any()):
-            as_given = dict(zip(given.names, given.unit, strict=True))
-            rest = [as_given.get(name, z) for name, z in zip(names[:-n_own], null, strict=False)]
-            own, away = null[-n_own:], inwards(null[-n_own:])
-            starts = np.array([[*rest, *(own + share * away)] for share in OF_RANGE]).T
-            alone = replace(self, known=Known())  # so far from it that nothing is hopeless yet
-            found += alone.steps(self.point, score, starts, 2 * ROUGH, names)
-        return found
+        return [*found, *self._from_far(score, names)]
+
+    def _from_far(self, score: Score, names: Sequence[str]) -> list[Point]:
+        """Some steps of an effect with one side only, from far sizes beside the targets as tuned without leeway.
+
+        names  what is free, the parameters of the hypothesis last
+        """
+        n_own, null = len(score.hypothesis.names), self.bench.null(names)
+        own, away = null[-n_own:], inwards(null[-n_own:])
+        if score.hypothesis.by or not away.any():
+            return []
+        given = dict(zip(self.before.names, self.before.unit, strict=True))
+        rest = [given.get(name, z) for name, z in zip(names[:-n_own], null[:-n_own], strict=True)]
+        starts = np.array([[*rest, *(own + share * away)] for share in OF_RANGE]).T
+        alone = replace(self, known=Known())  # so far from it that nothing is hopeless yet
+        return alone.steps(self.point, score, starts, 2 * ROUGH, names)
 
     def starts(self, point: Point, score: Score, sizes: Sequence[float]) -> FloatArray:
         """Where the refit of a hypothesis starts from a point, (n_names, n_starts): where its score says, and for an

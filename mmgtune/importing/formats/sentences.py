@@ -29,7 +29,7 @@ KINDS = frozenset((*ALONE, *(kind for several in HOLDERS.values() for kinds in s
 ONE_SENSOR = frozenset(KINDS - {"RSA", "ROR", "HTD", "RPM", "ZDA"})
 """Sentences that two sensors may send in turn, each of its own place or zero."""
 
-_SPEED = {letter: factors("m/s")[unit] for letter, unit in (("K", "km/h"), ("M", "m/s"), ("N", "kn"))} | {"S": 0.44704}
+_SPEED = {letter: factors("m/s")[unit] for letter, unit in (("K", "km/h"), ("M", "m/s"), ("N", "kn"), ("S", "mph"))}
 """Letters of units of speed; S is for statute miles per hour."""
 _PER_MINUTE = factors("rad/s")["deg/min"]
 _RPM = factors("1/s")["rpm"]
